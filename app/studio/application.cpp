@@ -49,6 +49,7 @@ std::vector<ui::SampleCard> sample_cards(const std::string& folder) {
     const char *title, *caption;
     std::vector<std::string> files;
     std::vector<std::string> then{};
+    std::string up{};
   } kCards[] = {
       {"A dance, by a heavy man", "87 scans and a target", {"scan", "target_adult.glb"}},
       {"A walk, by a girl of six", "45 scans and a target", {"walk", "target_child.glb"}},
@@ -56,11 +57,12 @@ std::vector<ui::SampleCard> sample_cards(const std::string& folder) {
       {"An animal's walk",
        "48 scans, to find its skeleton in",
        {"animal"},
-       {"source.up y", "panel.show bones on"}},
+       {"source.up y", "panel.show bones on"},
+       "y"},
   };
   std::vector<ui::SampleCard> cards;
   for (const auto& one : kCards) {
-    ui::SampleCard card{one.title, one.caption, {}, nullptr, one.then};
+    ui::SampleCard card{one.title, one.caption, {}, nullptr, one.then, one.up};
     for (const std::string& file : one.files) card.paths.push_back((fs::path(folder) / file).string());
     const bool all =
         std::all_of(card.paths.begin(), card.paths.end(), [](const auto& p) { return fs::exists(p); });
@@ -238,7 +240,7 @@ void Application::show_previews() {
   if (session().document.source.path.empty() && session().document.takes.empty()) {
     for (size_t i = 0; i < samples_; ++i) {
       ui::SampleCard& card = workspace_->sample(i);
-      card.picture = previews_->of(card.paths, kCardPicture, session().settings.dark).texture;
+      card.picture = previews_->of(card.paths, kCardPicture, session().settings.dark, card.up).texture;
     }
   }
   const bool is_file = previews_->update(), is_trial = study_pictures_->update();

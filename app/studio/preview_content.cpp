@@ -108,11 +108,12 @@ PreviewContent of_character(const Character& character) {
 }
 
 /// The skeleton of a motion, else the first frame of a scan.
-PreviewContent of_source(const std::string& path) {
+PreviewContent of_source(const std::string& path, const std::string& up = "") {
   PreviewContent content;
   SourceOptions options;
   options.path = path;
   options.quiet = true;
+  if (!up.empty()) options.import.up = up;
   const auto source = open_source(options);
   const auto count = source->count();
   const bool moves = !source->clips().empty();
@@ -150,9 +151,9 @@ std::string study_in_words(const std::string& path) {
   return study.name + ": " + (problem.empty() ? words : problem);
 }
 
-PreviewContent of_folder(const std::string& path) {
+PreviewContent of_folder(const std::string& path, const std::string& up) {
   try {
-    return of_source(fs::exists(fs::path(path) / "case.json") ? path + "/source" : path);
+    return of_source(fs::exists(fs::path(path) / "case.json") ? path + "/source" : path, up);
   } catch (const std::exception&) {  // what it would say is about somebody's files, which nobody wants opened
     return {{}, std::nullopt, "No frames of a scan in this folder."};
   }
@@ -171,11 +172,11 @@ PreviewContent of_file(const std::string& path) {
 
 }  // namespace
 
-PreviewContent preview_content(const std::string& path) {
+PreviewContent preview_content(const std::string& path, const std::string& up) {
   try {
     if (can_be(path, kDocument)) return of_document(path);
     if (can_be(path, kStudy)) return {{}, std::nullopt, study_in_words(path)};
-    return fs::is_directory(path) ? of_folder(path) : of_file(path);
+    return fs::is_directory(path) ? of_folder(path, up) : of_file(path);
   } catch (const std::exception& error) {
     return {{}, std::nullopt, error.what()};  // shown beside the file: it is only looked at
   }

@@ -18,14 +18,16 @@ constexpr size_t kWaiting = 4;  // what was asked for before is no longer looked
 Previews::Previews() = default;
 Previews::~Previews() = default;
 
-const FilePreview& Previews::of(const std::vector<std::string>& paths, render::PixelSize size, bool dark) {
-  std::string key = std::to_string(size.width) + "x" + std::to_string(size.height) + (dark ? "d\n" : "l\n");
+const FilePreview& Previews::of(const std::vector<std::string>& paths, render::PixelSize size, bool dark,
+                                const std::string& up) {
+  std::string key =
+      std::to_string(size.width) + "x" + std::to_string(size.height) + (dark ? "d\n" : "l\n") + up + '\n';
   for (const std::string& path : paths) key += path + '\n';
   const auto [at, is_new] = pictures_.try_emplace(key);
   at->second.used = ++uses_;
   if (is_new) {
     const auto held = worker_.lock();
-    to_read_.push_back({key, size, dark, paths, {}});
+    to_read_.push_back({key, size, dark, paths, up, {}});
     while (to_read_.size() > kWaiting) {
       pictures_.erase(to_read_.front().key);  // asked for again when it is looked at again
       to_read_.pop_front();
@@ -59,7 +61,8 @@ Worker::Task Previews::next() {
       std::make_shared<Reading>(std::move(to_read_.back()));  // the newest is what is looked at
   to_read_.pop_back();
   return [this, reading] {
-    for (const std::string& path : reading->paths) reading->contents.push_back(preview_content(path));
+    for (const std::string& path : reading->paths)
+      reading->contents.push_back(preview_content(path, reading->up));
     const auto held = worker_.lock();
     to_draw_.push_back(std::move(*reading));
   };

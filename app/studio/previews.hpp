@@ -32,8 +32,9 @@ class Previews {
   Previews& operator=(const Previews&) = delete;
 
   /// One picture of the scans, motions, targets and documents at these paths, side by side. Empty while it is
-  /// being made. Never waits.
-  const FilePreview& of(const std::vector<std::string>& paths, render::PixelSize size, bool dark);
+  /// being made. Never waits. up: see preview_content().
+  const FilePreview& of(const std::vector<std::string>& paths, render::PixelSize size, bool dark,
+                        const std::string& up = "");
   /// Draws at most one picture from what has been read. True when there is a new one.
   bool update();
   /// Whether something is still to be read or drawn.
@@ -45,6 +46,7 @@ class Previews {
     render::PixelSize size;
     bool dark = true;
     std::vector<std::string> paths;
+    std::string up;
     std::vector<PreviewContent> contents;
   };
   struct Picture {

@@ -29,13 +29,14 @@ std::vector<char> may_rest(const ScanEvidence& scans, const SurfaceTracks& track
   const DeformationGraph& graph = tracks.graph;
   const double frames = static_cast<double>(tracks.motions.size());
   std::vector<std::vector<RigidMotion>> of_node;
+  of_node.reserve(static_cast<size_t>(graph.count()));
   for (int k = 0; k < graph.count(); ++k) of_node.push_back(motions_of_node(tracks, k));
   const std::vector<RigidMotion> still(tracks.motions.size());
-  std::vector<char> may;
+  std::vector<char> may(static_cast<size_t>(graph.points.rows()));
   for (int i = 0; i < static_cast<int>(graph.points.rows()); ++i)
-    may.push_back(scans.off(i, still) <=
-                  kStillSlack * scans.off(i, of_node[static_cast<size_t>(graph.near(i, 0))]) +
-                      frames * std::pow(kStillOff * size, 2));
+    may[static_cast<size_t>(i)] =
+        scans.off(i, still) <= kStillSlack * scans.off(i, of_node[static_cast<size_t>(graph.near(i, 0))]) +
+                                   frames * std::pow(kStillOff * size, 2);
   return may;
 }
 

@@ -47,8 +47,8 @@ TwoAxes two_axes_of(const std::vector<Mat3>& turns) {
   for (const Vec3& start : {Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, 1)}) {
     TwoAxes axes{start, Vec3::Zero()};
     for (int step = 0; step < kSteps; ++step) {
-      std::vector<Vec3> seen;
-      for (const Mat3& R : turns) seen.emplace_back(R.transpose() * axes.first);
+      std::vector<Vec3> seen(turns.size());
+      for (size_t t = 0; t < turns.size(); ++t) seen[t] = turns[t].transpose() * axes.first;
       axes.second = least_changing(seen, axes.first).first;
       for (size_t t = 0; t < turns.size(); ++t) seen[t] = turns[t] * axes.second;
       std::tie(axes.first, axes.off) = least_changing(seen, axes.second);
@@ -120,6 +120,7 @@ bool turn_on_two_axes(const SurfaceTracks& tracks, int j, RigidParts& parts, Par
   const std::vector<RigidMotion>& child =
       parts.motions[static_cast<size_t>(tree.part_of_bone[static_cast<size_t>(j)])];
   std::vector<Mat3> turns;
+  turns.reserve(child.size());
   for (const RigidMotion& motion : child) turns.push_back(motion.R);
   const TwoAxes axes = two_axes_of(turns);
   if (axes.off > kTwoAxesOff) return false;

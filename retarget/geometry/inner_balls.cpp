@@ -43,6 +43,7 @@ Eigen::VectorXf inner_radii(const PointTree& surface, const Points& normals) {
   for (Eigen::Index i = 0; i < raw.size(); ++i) {
     surface.nearest(points.row(i).transpose(), kSmoothed, near);
     std::vector<float> radii;
+    radii.reserve(near.size());
     for (const PointTree::Near& n : near) radii.push_back(raw[n.point]);
     const auto middle = radii.begin() + static_cast<std::ptrdiff_t>(radii.size() / 2);
     std::nth_element(radii.begin(), middle, radii.end());

@@ -16,6 +16,7 @@ struct SampleCard {
   app::Arguments paths;        ///< of the command open
   ImTextureID picture = nullptr;
   std::vector<std::string> then{};  ///< commands after that, as lines of a script
+  std::string up{};                 ///< which way is up in its scan; empty: as it is guessed
 };
 
 /// Fills the current window.
