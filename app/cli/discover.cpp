@@ -200,7 +200,7 @@ BoneMatches matches_of(const DiscoverOptions& options, const LaidBody& laid, con
                        const RiggedMotion& target) {
   if (!options.matches.empty() && std::filesystem::exists(options.matches))
     return read_matches(options.matches, source.rig, target.rig);
-  const BoneMatches matches = match_bones(laid, source, target);
+  BoneMatches matches = match_bones(laid, source, target);
   if (options.matches.empty()) return matches;
   write_json(options.matches, to_json(matches, source.rig, target.rig));
   std::printf("%s: the partners; change them there and run this again\n", options.matches.c_str());

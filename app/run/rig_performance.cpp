@@ -15,8 +15,8 @@
 #include "retarget/character/read_character.hpp"
 #include "retarget/character/rig_character.hpp"
 #include "retarget/discovery/first_pose.hpp"
+#include "retarget/discovery/rig_figures.hpp"
 #include "retarget/discovery/rig_follower.hpp"
-#include "retarget/math/percentile.hpp"
 #include "retarget/math/rotation.hpp"
 
 namespace understudy::app {
@@ -51,18 +51,6 @@ void describe(DiscoveredRig& rig) {
       bone.slid_m = std::max(bone.slid_m, std::abs(pose.slides[j]));
     }
   }
-}
-
-/// Frames that fit clearly worse than the others, or could not be used.
-std::vector<bool> doubted(const std::vector<float>& off_m) {
-  constexpr double kMuch = 2;
-  std::vector<double> known;
-  for (const float off : off_m)
-    if (off >= 0) known.push_back(static_cast<double>(off));
-  const double usual = percentile(known, 50);
-  std::vector<bool> result;
-  for (const float off : off_m) result.push_back(off < 0 || static_cast<double>(off) > kMuch * usual);
-  return result;
 }
 
 int bone_named(const understudy::Rig& rig, const std::string& name, const std::string& path) {
@@ -112,7 +100,7 @@ FollowedScans follow_scans(const RiggedMotion& known, Source& source,
     if (!rig.complete) break;
   }
   US_CHECK(begun, "no scan has ", kFewest, " points: there is nothing to lay the rig on");
-  rig.doubted = doubted(rig.off_m);
+  rig.doubted = doubted_frames(rig.off_m);
   describe(rig);
   return followed;
 }

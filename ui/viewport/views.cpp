@@ -435,14 +435,7 @@ void Views::describe(const Session& session, const Pane& pane, const Theme& look
   if (joints != nullptr && !no_joints)
     overlay.labels = joint_labels(view, *joints, layers.joint_names && layers.skeleton,
                                   hand_.hovered_joint(pane.content), selected);
-  const auto bones = posed_bones(session, pane.content, frame);
-  const int bone = bones && under_ == &pane && session.tool == app::Tool::Look
-                       ? bone_under(session, pane, pointer_.at)
-                       : -1;
-  if (bones)
-    for (Overlay::Label& label :
-         bone_labels(session, pane.view.shifted(aside(session, pane.content, 0)), *bones, bone))
-      overlay.labels.push_back(std::move(label));
+  label_bones(session, pane, overlay);
   if (session.tool == app::Tool::Crop && pane.content.source) {
     const Points centres = face_centres(pane.preview.crop.value_or(app::shown_crop(session)));
     for (int face = 0; face < 6; ++face)
@@ -453,15 +446,32 @@ void Views::describe(const Session& session, const Pane& pane, const Theme& look
   overlay.tags = person_tags(session, pane, frame, look);
   if (under_ != &pane) return;
   overlay.tip_at = pointer_.at;
-  overlay.tip = hand_.tip();
-  if (!overlay.tip.empty() || session.playback.playing) return;
-  if (bone >= 0) overlay.tip = bone_words(session, bone);
-  if (!overlay.tip.empty()) return;
-  overlay.tip = value_under(session, pane, pointer_.at);
-  if (!overlay.tip.empty() || session.tool != app::Tool::Look) return;
+  overlay.tip = words_at_pointer(session, pane);
+}
+
+/// The bone that was found in the scan and lies under the pointer; -1: none.
+int Views::bone_at_pointer(const Session& session, const Pane& pane) const {
+  return under_ == &pane && session.tool == app::Tool::Look ? bone_under(session, pane, pointer_.at) : -1;
+}
+
+void Views::label_bones(const Session& session, const Pane& pane, Overlay& overlay) const {
+  const auto bones = posed_bones(session, pane.content, pane.keeper.pictures().frame);
+  if (!bones) return;
+  for (Overlay::Label& label : bone_labels(session, pane.view.shifted(aside(session, pane.content, 0)),
+                                           *bones, bone_at_pointer(session, pane)))
+    overlay.labels.push_back(std::move(label));
+}
+
+std::string Views::words_at_pointer(const Session& session, const Pane& pane) const {
+  std::string words = hand_.tip();
+  if (!words.empty() || session.playback.playing) return words;
+  if (const int bone = bone_at_pointer(session, pane); bone >= 0) return bone_words(session, bone);
+  words = value_under(session, pane, pointer_.at);
+  if (!words.empty() || session.tool != app::Tool::Look) return words;
   if (const int number = person_under(session, pane, pointer_.at); number > 0)
-    overlay.tip = "Person " + std::to_string(number) +
-                  (number == session.source.person ? ": performs" : ": click, and they perform");
+    words = "Person " + std::to_string(number) +
+            (number == session.source.person ? ": performs" : ": click, and they perform");
+  return words;
 }
 
 /// Where each ring of the gizmo is farthest from its middle, as seen.

@@ -64,6 +64,9 @@ class Views {
   bool moving(const app::Session& session) const;
   void show(const Frame& f, Pane& pane, const Rect& part, bool right);
   void describe(const app::Session& session, const Pane& pane, const Theme& look, Overlay& overlay) const;
+  int bone_at_pointer(const app::Session& session, const Pane& pane) const;
+  void label_bones(const app::Session& session, const Pane& pane, Overlay& overlay) const;
+  std::string words_at_pointer(const app::Session& session, const Pane& pane) const;
   void draw_brush(const Frame& f, const Pane& pane);
   void mark_rings(const Frame& f, const Pane& pane) const;
   static void mark_bones(const Frame& f, const Pane& pane);
