@@ -16,8 +16,8 @@ struct PreviewContent {
   std::string text;              ///< "87 frames, 4,202 points"; or why there is nothing to see
 };
 
-/// Reads it; never throws. The text of a folder without frames names none of its files. up: which way is up in
-/// a scan; empty: as it is guessed.
+/// Reads it; never throws. The text of a folder without frames names none of its files. up: which way is up
+/// in a scan; empty: as it is guessed.
 PreviewContent preview_content(const std::string& path, const std::string& up = "");
 
 }  // namespace understudy::app
