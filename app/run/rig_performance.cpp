@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <memory>
 #include <utility>
 
@@ -17,7 +16,6 @@
 #include "retarget/discovery/first_pose.hpp"
 #include "retarget/discovery/rig_figures.hpp"
 #include "retarget/discovery/rig_follower.hpp"
-#include "retarget/math/rotation.hpp"
 
 namespace understudy::app {
 namespace {
@@ -35,22 +33,12 @@ double key_rate(const Character& character) {
 
 /// What tables tell of a rig that was followed.
 void describe(DiscoveredRig& rig) {
-  const auto& poses = rig.found.motion.poses;
-  rig.bones.resize(rig.found.rig.joints.size());
   double off = 0;
   int known = 0;
   for (const float one : rig.off_m)
     if (one >= 0) off += static_cast<double>(one), ++known;
-  for (size_t j = 0; j < rig.bones.size(); ++j) {
-    FoundBone& bone = rig.bones[j];
-    bone.off_m = static_cast<float>(off / std::max(1, known));
-    for (const RigPose& pose : poses) {
-      if (j > 0)
-        bone.turned_deg =
-            std::max(bone.turned_deg, geodesic_angle(pose.turns[j], Mat3::Identity()) * 180 / kPi);
-      bone.slid_m = std::max(bone.slid_m, std::abs(pose.slides[j]));
-    }
-  }
+  measure_motion(rig.found, rig.bones);
+  for (FoundBone& bone : rig.bones) bone.off_m = static_cast<float>(off / std::max(1, known));
 }
 
 int bone_named(const understudy::Rig& rig, const std::string& name, const std::string& path) {

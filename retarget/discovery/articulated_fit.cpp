@@ -100,13 +100,7 @@ void BoneFit::add_match(int point, const Vec3& to, const Vec3& normal, float rad
 
 void BoneFit::match(float radius, const BoneMotions& bones) {
   posed_ = skinned(surface_.points, surface_.skin, bones);
-  normals_.resize(posed_.rows(), 3);
-  for (Eigen::Index i = 0; i < posed_.rows(); ++i) {
-    Eigen::Index most;
-    surface_.skin.weights.row(i).maxCoeff(&most);
-    normals_.row(i) =
-        surface_.normals.row(i) * bones[static_cast<size_t>(surface_.skin.bones(i, most))].R.transpose();
-  }
+  normals_ = posed_normals(surface_, bones);
   const float reach2 = kMatchReach * kMatchReach * radius * radius;
   const auto agree = [&](Eigen::Index point, Eigen::Index of_scan) {
     return normals_.row(point).dot(scan_.normals.row(of_scan)) > 0.3f;
@@ -184,6 +178,14 @@ void BoneFit::round(float radius, BoneMotions& bones) {
 }
 
 }  // namespace
+
+Points posed_normals(const FittedSurface& surface, const BoneMotions& bones) {
+  Points normals(surface.normals.rows(), 3);
+  for (Eigen::Index i = 0; i < normals.rows(); ++i)
+    normals.row(i) =
+        surface.normals.row(i) * bones[static_cast<size_t>(surface.skin.main_bone(i))].R.transpose();
+  return normals;
+}
 
 void fit_bones(const Rig& rig, const FittedSurface& surface, const ThinnedFrame& scan,
                const ArticulatedFitOptions& options, BoneMotions& bones) {

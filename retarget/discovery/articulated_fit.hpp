@@ -12,6 +12,9 @@ struct FittedSurface {
   SkinWeights skin;        ///< of these points
 };
 
+/// The normals at the surface's points when its bones move so, each turned with its main bone, [N, 3].
+Points posed_normals(const FittedSurface& surface, const BoneMotions& bones);
+
 /// A stiffness of joints that nothing gives in.
 constexpr float kRigidJoints = 1000;
 

@@ -48,12 +48,7 @@ class PosedShapes {
  private:
   Pose posed(const Rig& rig, int frame, const BoneMotions& bones) const {
     const Points points = skinned(thin_.points, skin, bones);
-    Points normals(points.rows(), 3);
-    for (Eigen::Index i = 0; i < normals.rows(); ++i) {
-      Eigen::Index most;
-      skin.weights.row(i).maxCoeff(&most);
-      normals.row(i) = thin_.normals.row(i) * bones[static_cast<size_t>(skin.bones(i, most))].R.transpose();
-    }
+    const Points normals = posed_normals({thin_.points, thin_.normals, skin}, bones);
     const auto few = std::min<Eigen::Index>(kRoughPoints, points.rows());
     const Vec3 middle = points.colwise().mean().transpose();
     return {

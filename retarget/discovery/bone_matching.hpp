@@ -18,11 +18,11 @@ void check_matches(const BoneMatches& matches, const Rig& source, const Rig& tar
 /// A source's body laid on a target's, in the two of their poses that are most alike.
 struct LaidBody {
   int source_frame = 0, target_frame = 0;
-  Mat3 turn =
-      Mat3::Identity();  ///< from the source's space to the target's: about y, perhaps a mirror in x first
-  float scale = 1;       ///< the target's size over the source's
-  std::vector<Mat3>
-      corrections;  ///< [J of the source] from how a bone lies on the target to how it was posed, in the target's space
+  /// From the source's space to the target's: about y, perhaps a mirror in x first.
+  Mat3 turn = Mat3::Identity();
+  float scale = 1;  ///< the target's size over the source's
+  /// [J of the source] from how a bone lies on the target to how it was posed, in the target's space.
+  std::vector<Mat3> corrections;
   Points points, joints;  ///< of the source, on the target [N, 3], [J, 3]
   SkinWeights skin;       ///< of the points
   bool mirrored() const { return turn.determinant() < 0; }

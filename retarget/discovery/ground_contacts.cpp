@@ -26,11 +26,8 @@ class Soles {
     constexpr uint64_t kSoleSeed = 20240617;
     points_ = thinned(rig.surface, kSolePoints, kSolePoints, kSoleSeed).points;
     skin_ = weights_between(points_, rig.surface.vertices, rig.skin, rig.count());
-    for (Eigen::Index i = 0; i < points_.rows(); ++i) {
-      Eigen::Index most;
-      skin_.weights.row(i).maxCoeff(&most);
-      of_bone[static_cast<size_t>(skin_.bones(i, most))].push_back(static_cast<int>(i));
-    }
+    for (Eigen::Index i = 0; i < points_.rows(); ++i)
+      of_bone[static_cast<size_t>(skin_.main_bone(i))].push_back(static_cast<int>(i));
     size = box_diagonal(points_);
   }
   Points posed(const Rig& rig, const RigPose& pose) const {

@@ -96,12 +96,9 @@ Points Stretching::posed() const {
 Points Stretching::turned_normals() const {
   const FittedSurface& surface = body_.surface;
   Points normals(surface.points.rows(), 3);
-  for (Eigen::Index i = 0; i < normals.rows(); ++i) {
-    Eigen::Index most;
-    surface.skin.weights.row(i).maxCoeff(&most);
+  for (Eigen::Index i = 0; i < normals.rows(); ++i)
     normals.row(i) =
-        surface.normals.row(i) * bones_[static_cast<size_t>(surface.skin.bones(i, most))].R.transpose();
-  }
+        surface.normals.row(i) * bones_[static_cast<size_t>(surface.skin.main_bone(i))].R.transpose();
   return normals;
 }
 

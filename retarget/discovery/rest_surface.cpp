@@ -45,12 +45,6 @@ Blend blend_at(const Vec3& rest, const FittedSurface& surface, const PointTree& 
   return blend;
 }
 
-int main_bone(const SkinWeights& skin, Eigen::Index point) {
-  Eigen::Index most;
-  skin.weights.row(point).maxCoeff(&most);
-  return skin.bones(point, most);
-}
-
 /// Points of one frame at rest, added to those that are there.
 class RestGatherer {
  public:
@@ -78,7 +72,7 @@ void RestGatherer::add(const ThinnedFrame& frame, const BoneMotions& bones, int 
     const Eigen::Index i = row * frame.points.rows() / rows;
     const Vec3 at = frame.points.row(i).transpose(), normal = frame.normals.row(i).transpose();
     const PointTree::Near nearest = posed.nearest(at);
-    const RigidMotion& bone = bones[static_cast<size_t>(main_bone(surface_.skin, nearest.point))];
+    const RigidMotion& bone = bones[static_cast<size_t>(surface_.skin.main_bone(nearest.point))];
     const Vec3 turned = bone.R.transpose() * normal;
     if (nearest.squared > reach_ * reach_ || turned.dot(surface_.normals.row(nearest.point).transpose()) < 0)
       continue;

@@ -28,13 +28,10 @@ ThinnedFrame quickly_thinned(const Mesh& scan, const FittedSurface& surface, con
   for (Eigen::Index i = 0, at = 0; i < count; ++i, at = (at + step) % all.rows()) points.row(i) = all.row(at);
   Points normals = estimated_normals(points);
   const PointTree posed(skinned(surface.points, surface.skin, expected));
-  for (Eigen::Index i = 0; i < count; ++i) {
-    const int near = posed.nearest(points.row(i).transpose()).point;
-    Eigen::Index most;
-    surface.skin.weights.row(near).maxCoeff(&most);
-    const Mat3& R = expected[static_cast<size_t>(surface.skin.bones(near, most))].R;
-    if (normals.row(i).dot(surface.normals.row(near) * R.transpose()) < 0) normals.row(i) *= -1;
-  }
+  const Points outwards = posed_normals(surface, expected);
+  for (Eigen::Index i = 0; i < count; ++i)
+    if (normals.row(i).dot(outwards.row(posed.nearest(points.row(i).transpose()).point)) < 0)
+      normals.row(i) *= -1;
   return {points, normals, static_cast<int>(std::min<Eigen::Index>(kScanSpread, count)), PointTree(points)};
 }
 

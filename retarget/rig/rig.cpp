@@ -51,6 +51,12 @@ JointKind joint_kind_named(std::string_view name) {
   return static_cast<JointKind>(found - kJointKindNames.begin());
 }
 
+int SkinWeights::main_bone(Eigen::Index row) const {
+  Eigen::Index most;
+  weights.row(row).maxCoeff(&most);
+  return bones(row, most);
+}
+
 RowMatrix SkinWeights::dense(int joints) const {
   RowMatrix all = RowMatrix::Zero(size(), joints);
   for (Eigen::Index v = 0; v < size(); ++v)
@@ -190,11 +196,8 @@ std::vector<std::vector<int>> children_of(const Rig& rig) {
 std::vector<BoneTip> bone_tips(const Rig& rig) {
   const auto children = children_of(rig);
   std::vector<std::vector<Eigen::Index>> vertices(rig.joints.size());
-  for (Eigen::Index v = 0; v < rig.skin.size(); ++v) {
-    Eigen::Index most;
-    rig.skin.weights.row(v).maxCoeff(&most);
-    vertices[static_cast<size_t>(rig.skin.bones(v, most))].push_back(v);
-  }
+  for (Eigen::Index v = 0; v < rig.skin.size(); ++v)
+    vertices[static_cast<size_t>(rig.skin.main_bone(v))].push_back(v);
   std::vector<BoneTip> tips;
   for (int j = 1; j < rig.count(); ++j) {
     const auto& own = vertices[static_cast<size_t>(j)];

@@ -32,6 +32,8 @@ struct SkinWeights {
   Eigen::Matrix<int, Eigen::Dynamic, kSkinBones, Eigen::RowMajor> bones;      ///< [V, 4] joints
   Eigen::Matrix<float, Eigen::Dynamic, kSkinBones, Eigen::RowMajor> weights;  ///< [V, 4], rows sum to 1
   Eigen::Index size() const { return bones.rows(); }
+  /// The bone of a row's largest weight.
+  int main_bone(Eigen::Index row) const;
   /// [V, joints]
   RowMatrix dense(int joints) const;
   /// Of every row the four largest, made to sum to 1. Throws Error where a row has nothing positive.
