@@ -90,6 +90,11 @@ void look_for_ring(Found& found, const GizmoView& gizmo, float reach, int axis, 
   }
 }
 
+/// Those that there is something to grip of.
+int axes_of(const GizmoView& gizmo) {
+  return gizmo.kind == GizmoView::Kind::Turn ? gizmo.rings : 3;
+}
+
 }  // namespace
 
 float gizmo_reach(const GizmoView& gizmo, const Camera& camera) {
@@ -104,7 +109,7 @@ GizmoHandle handle_under(const GizmoView& gizmo, const Camera& camera, const Ray
   if (gizmo.kind == GizmoView::Kind::Move && distance_to(pointer, gizmo.position) < 1.2f * kCentre * reach)
     return GizmoHandle::Centre;
   Found found;
-  for (int axis = 0; axis < 3; ++axis) {
+  for (int axis = 0; axis < axes_of(gizmo); ++axis) {
     if (gizmo.kind == GizmoView::Kind::Turn) {
       look_for_ring(found, gizmo, reach, axis, pointer);
     } else {
@@ -148,7 +153,7 @@ float turned(const GizmoView& gizmo, GizmoHandle handle, const Camera& camera, c
 MeshView gizmo_solids(const GizmoView& gizmo, const Camera& camera) {
   const float reach = gizmo_reach(gizmo, camera);
   Solids solids;
-  for (int axis = 0; axis < 3; ++axis) {
+  for (int axis = 0; axis < axes_of(gizmo); ++axis) {
     const GizmoHandle handle = handle_of(GizmoHandle::AxisX, axis),
                       plane = handle_of(GizmoHandle::PlaneYz, axis);
     const Vec3 along = reach * gizmo.axes.col(axis), color = color_of(gizmo, handle, kAxisColors[axis]);

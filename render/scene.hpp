@@ -92,12 +92,13 @@ struct GizmoView {
   Kind kind = Kind::Move;
   Vec3 position = Vec3::Zero();             ///< metres
   Mat3 axes = Mat3::Identity();             ///< its x, y, z as columns
+  int rings = 3;                            ///< of Turn: about the first so many axes
   float size = 0.13f;                       ///< of an arrow, as a share of the picture's height
   GizmoHandle hovered = GizmoHandle::None;  ///< drawn bright
 };
 template <class V, class S>
 FieldsOf<S, GizmoView> fields(V& visit, S& g) {
-  unnamed(visit, g.kind, g.position, g.axes, g.size, g.hovered);
+  unnamed(visit, g.kind, g.position, g.axes, g.rings, g.size, g.hovered);
 }
 
 /// The floor: a grid that fades out, and soft shadows of all that stands above it.

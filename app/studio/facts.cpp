@@ -6,6 +6,7 @@
 #include "retarget/base/error.hpp"
 #include "retarget/base/index.hpp"
 #include "retarget/base/text.hpp"
+#include "retarget/math/rotation.hpp"
 
 namespace understudy::app {
 namespace {
@@ -61,6 +62,16 @@ std::string goes_on(const Session& session) {
   return on ? printed("%.3g", static_cast<double>(take->pose_edits.go_on->seconds)) : "";
 }
 
+/// Of the chosen found bone in the frame shown, whole degrees against its parent; "none" without one.
+std::string bone_turn(const Session& session) {
+  const auto& rig = session.bones.rig;
+  const RigPose* const pose =
+      rig ? at_or_null(rig->found.motion.poses, frame_of_rig(*rig, shown_frame(session))) : nullptr;
+  const Mat3* const turn = pose != nullptr ? at_or_null(pose->turns, session.bones.selected) : nullptr;
+  if (turn == nullptr) return "none";
+  return printed("%.0f", static_cast<double>(geodesic_angle(*turn, Mat3::Identity()) * 180 / kPi));
+}
+
 }  // namespace
 
 std::vector<std::pair<std::string, std::string>> facts(const Session& session) {
@@ -75,6 +86,7 @@ std::vector<std::pair<std::string, std::string>> facts(const Session& session) {
       {"source", session.document.source.path},
       {"bones", std::to_string(session.bones.rig ? session.bones.rig->found.rig.count() : 0)},
       {"bone", std::to_string(session.bones.selected)},
+      {"bone_turn", bone_turn(session)},
       {"bones_stage", session.bones.job != 0 ? session.bones.stage : "none"},
       {"people", count(session.source.people.size())},
       {"person", std::to_string(session.source.person)},

@@ -23,7 +23,9 @@ constexpr float kSoftCut = 0.05f;  // to each side of a cut, of the bone's lengt
 constexpr float kOnSkin = 0.25f;   // a place so near to a vertex is on the surface, of a limb's thickness
 constexpr float kNoWeight = 1e-4f;
 
-RigJoint& joint_of(Rig& rig, int joint) {
+/// Of a Rig or a const one.
+template <class AnyRig>
+auto& joint_of(AnyRig& rig, int joint) {
   US_CHECK(joint >= 0 && joint < rig.count(), "there is no joint ", joint, " among ", rig.count());
   return rig.joints[static_cast<size_t>(joint)];
 }
@@ -391,14 +393,19 @@ void change(RiggedMotion& performed, const PaintBone& edit) {
   }
 }
 
-void change(RiggedMotion& performed, const TurnBone& edit) {
-  const RigJoint& joint = joint_of(performed.rig, edit.joint);
+/// As much of the turn as the joint allows.
+Vec3 allowed_turn(const Rig& rig, const TurnBone& edit) {
+  const RigJoint& joint = joint_of(rig, edit.joint);
   US_CHECK(edit.axis_angle.allFinite(), "a turn must be three finite numbers");
-  check_frames(performed.motion, edit.frame, edit.frame);
   US_CHECK(joint.kind != JointKind::Slider && joint.kind != JointKind::Fixed, joint.name,
            " does not turn: its joint is ", joint.kind == JointKind::Fixed ? "fixed" : "a slider");
-  const Vec3 turn =
-      joint.kind == JointKind::Hinge ? Vec3(joint.axis.dot(edit.axis_angle) * joint.axis) : edit.axis_angle;
+  return joint.kind == JointKind::Hinge ? Vec3(joint.axis.dot(edit.axis_angle) * joint.axis)
+                                        : edit.axis_angle;
+}
+
+void change(RiggedMotion& performed, const TurnBone& edit) {
+  const Vec3 turn = allowed_turn(performed.rig, edit);
+  check_frames(performed.motion, edit.frame, edit.frame);
   for (size_t t = 0; t < performed.motion.poses.size(); ++t) {
     const float amount = falloff_weight(static_cast<int>(t), edit.frame, edit.falloff);
     Mat3& R = performed.motion.poses[t].turns[static_cast<size_t>(edit.joint)];
@@ -455,6 +462,14 @@ std::vector<int> apply(RiggedMotion& performed, const RigEdit& edit) {
     }
   };
   return std::visit(one, edit);
+}
+
+RigPose turned(const Rig& rig, const RigPose& pose, const TurnBone& edit) {
+  const Vec3 turn = allowed_turn(rig, edit);
+  RigPose after = pose;
+  Mat3& R = after.turns.at(static_cast<size_t>(edit.joint));
+  R = R * rotation_from_axis_angle(turn);
+  return after;
 }
 
 std::vector<int> merge_into_parent(Rig& rig, int joint) {

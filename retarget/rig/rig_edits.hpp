@@ -170,6 +170,9 @@ constexpr Names<std::variant_size_v<RigEdit>> kRigEditNames = {
 /// merged one is its parent's. Throws Error as told above, and for FitAgain.
 std::vector<int> apply(RiggedMotion& performed, const RigEdit& edit);
 
+/// One pose in which a bone is turned as by TurnBone, whatever the edit's frame. Throws Error as apply().
+RigPose turned(const Rig& rig, const RigPose& pose, const TurnBone& edit);
+
 /// MergeBone of a rig alone. Returns the new numbers, as apply().
 std::vector<int> merge_into_parent(Rig& rig, int joint);
 

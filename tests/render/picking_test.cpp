@@ -150,6 +150,9 @@ TEST_P(Gizmo, FindsEachHandle) {
   EXPECT_EQ(under(at(0.6f, 0, 0.8f)), GizmoHandle::AxisY);
   EXPECT_EQ(under(at(0.6f, 0.8f, 0)), GizmoHandle::AxisZ);
   EXPECT_EQ(under(at(0, 0, 0)), GizmoHandle::None);
+  gizmo_.rings = 1;
+  EXPECT_EQ(under(at(0, 0.6f, 0.8f)), GizmoHandle::AxisX);
+  EXPECT_EQ(under(at(0.6f, 0, 0.8f)), GizmoHandle::None);
 }
 
 TEST_P(Gizmo, FollowsThePointerAlongAxesAndPlanes) {

@@ -6,6 +6,7 @@
 #include "retarget/character/read_character.hpp"
 #include "retarget/character/rig_character.hpp"
 #include "retarget/formats/npz.hpp"
+#include "retarget/math/rotation.hpp"
 #include "retarget/pipeline/human_rest.hpp"
 #include "tests/retarget/discovery/bending_arm.hpp"
 #include "tests/session/studio_fixture.hpp"
@@ -231,6 +232,29 @@ TEST_F(Bones, TakeEveryKindOfEdit) {
   ASSERT_TRUE(studio.session().bones.rig) << studio.session().bones.problem;
   EXPECT_NE(studio.session().bones.rig, edited);
   EXPECT_TRUE(studio.session().bones.problem.empty());
+}
+
+TEST_F(Bones, ATurnIsOneStepThatGoesAndComes) {
+  Studio studio(services());
+  find(studio);
+  const auto found = studio.session().bones.rig;
+  const Vec3 axis = rig(studio).joints[1].axis;
+  app::Arguments words{"1", "5"};
+  for (int i = 0; i < 3; ++i) words.push_back(std::to_string(0.5f * axis[i]));
+  words.push_back("0");
+  studio.run("bones.turn", words);
+  EXPECT_EQ(undo_label(studio.session()), "Turn bone 1");
+  const auto turned = studio.session().bones.rig;
+  for (size_t t = 0; t < found->found.motion.poses.size(); ++t)
+    EXPECT_NEAR(geodesic_angle(found->found.motion.poses[t].turns[1], turned->found.motion.poses[t].turns[1]),
+                t == 5 ? 0.5f : 0, 1e-3f);
+  studio.run("edit.undo");
+  studio.tick(0);
+  EXPECT_EQ(studio.session().bones.rig, found);
+  studio.run("edit.redo");
+  studio.tick(0);
+  EXPECT_EQ(studio.session().bones.rig, turned);
+  EXPECT_EQ(studio.session().bones.job, 0) << "no new search";
 }
 
 TEST_F(Bones, RefuseWhatCannotBeDoneAndStayAsTheyWere) {

@@ -3,6 +3,7 @@
 
 #include <set>
 
+#include "retarget/rig/rig_edits.hpp"
 #include "tests/ui/support/viewport_stage.hpp"
 #include "ui/viewport/pane.hpp"
 
@@ -12,31 +13,14 @@ namespace {
 struct BonesScene : testing::Test {
   BonesScene() {
     stage.show_frame(10);
-    auto rig = std::make_shared<DiscoveredRig>();
-    understudy::Rig& found = rig->found.rig;
-    found.joints = {{"hips", -1, JointKind::Free, Vec3(0, 0.9f, 0)},
-                    {"arm", 0, JointKind::Ball, Vec3(0, 1.4f, 0)}};
-    found.surface = stage.mesh;
-    std::vector<int> bones;
-    for (Eigen::Index v = 0; v < stage.mesh.vertices.rows(); ++v)
-      bones.push_back(stage.mesh.vertices(v, 1) > 1.4f ? 1 : 0);
-    found.skin = SkinWeights::rigid(bones);
-    for (int t = 0; t < 24; ++t) {
-      RigPose pose = rest_pose(found);
-      pose.root.x() += 0.1f * static_cast<float>(t);
-      rig->found.motion.poses.push_back(pose);
-    }
-    rig->bones.resize(2), rig->off_m.assign(24, 0.f), rig->doubted.assign(24, false);
-    session.document.bones.wanted = true;
-    session.bones.rig = rig;
+    stage.add_found();
   }
-  render::Scene scene() {
+  render::Scene scene(const EditPreview& preview = {}) {
     const PaneContent content = pane_of(0);
     pictures_of(session, *stage.cache, content, pane_frame(session, content));
     stage.cache->wait();
     last = pictures_of(session, *stage.cache, content, pane_frame(session, content)).value();
-    const EditPreview none;
-    return build_scene({session, content, last, {}, none, ThemeKind::Dark}, memory).scene;
+    return build_scene({session, content, last, {}, preview, ThemeKind::Dark}, memory).scene;
   }
   Stage stage;
   app::Session& session = stage.session;
@@ -86,6 +70,22 @@ TEST_F(BonesScene, TheChosenOneIsBrightAndAloneInColour) {
   EXPECT_EQ(own.size(), 1u);
   EXPECT_EQ(others.size(), 1u) << "all others are grey";
   EXPECT_NE(own, others);
+}
+
+TEST_F(BonesScene, ABoneThatIsBeingTurnedIsSeenTurned) {
+  session.view.bone_surface = app::BoneSurface::Over;
+  const render::Scene before = scene();
+  const DiscoveredRig& rig = *session.bones.rig;
+  EditPreview preview;
+  preview.found.pose = std::make_shared<const RigPose>(
+      turned(rig.found.rig, rig.found.motion.poses[10], TurnBone{1, 0, Vec3(0, 0, 0.6f)}));
+  const render::Scene after = scene(preview);
+  EXPECT_EQ(after.skeletons[1].joints.topRows(2), before.skeletons[1].joints.topRows(2)) << "about its joint";
+  EXPECT_GT((after.skeletons[1].joints.row(2) - before.skeletons[1].joints.row(2)).norm(), 0.1f) << "its end";
+  const Points &was = *before.meshes[0].vertices, &now = *after.meshes[0].vertices;
+  for (Eigen::Index v = 0; v < was.rows(); ++v)
+    EXPECT_EQ((now.row(v) - was.row(v)).norm() > 1e-3f, stage.mesh.vertices(v, 1) > 1.41f) << v;
+  EXPECT_EQ(*scene().meshes[0].vertices, was) << "let go";
 }
 
 TEST_F(BonesScene, ABoneIsMetWhereItIsSeen) {

@@ -48,6 +48,8 @@ class ViewsTest : public UiTest {
     } else if (name == "select.joint") {
       for (int j = 0; j < kJointCount; ++j)
         if (words[0] == kJointNames[static_cast<size_t>(j)]) stage.session.selected_joint = j;
+    } else if (name == "bones.select") {
+      stage.session.bones.selected = std::stoi(words[0]);
     }
   }
   PaneView pane(int number) {
@@ -481,6 +483,62 @@ TEST_F(ViewsTest, ABoneIsSeenTurnedUntilTheEditShows) {
   EXPECT_NE(hand.turned_picture(place), nullptr);
   stage.session.takes[0].shown.poses[10].local[RightElbow] = rotation_about_y(0.3f);  // shown; no joint moved
   EXPECT_EQ(hand.turned_picture(place), nullptr);
+}
+
+TEST_F(ViewsTest, AFoundBoneIsTurnedByARingWithOneCommand) {
+  stage.add_found(0);
+  stage.session.tool = app::Tool::Bones;
+  stage.session.view.cameras[0].yaw = 0.f, stage.session.view.cameras[0].pitch = 0.f;
+  frame(2);
+  EXPECT_FALSE(shown("view.ring.z")) << "none is chosen";
+  click(mark("view.bone.1").rect.at(0.5f, 0.5f));
+  EXPECT_EQ(stage.session.bones.selected, 1);
+  EXPECT_EQ(count("bones.turn") + count("select.joint"), 0);
+  frame(2);
+  const ImVec2 middle = seen(0, Vec3(0, 1.4f, 0));
+  const float reach = 0.13f * pane(0).rect.height();  // the ring that faces the camera
+  const auto at = [&](float angle) {
+    return ImVec2(middle.x + reach * std::cos(angle), middle.y - reach * std::sin(angle));
+  };
+  drag(at(-0.6f), at(-0.1f));
+  EXPECT_EQ(count("bones.turn"), 1);
+  const app::Arguments words = asked("bones.turn");
+  EXPECT_EQ(words[0], "1");
+  EXPECT_EQ(words[1], "10");
+  EXPECT_LT((vector_at(words, 2) - Vec3(0, 0, 0.5f)).norm(), 0.05f) << "the bone's own axes";
+  EXPECT_EQ(words[5], std::to_string(stage.session.falloff));
+  EXPECT_EQ(count("view.camera_state"), 0);
+}
+
+TEST_F(ViewsTest, AFoundHingeHasOneRingAndWhatDoesNotTurnNone) {
+  stage.add_found(0);
+  stage.session.tool = app::Tool::Bones, stage.session.bones.selected = 1;
+  const auto rings = [&](JointKind kind) {
+    auto rig = std::make_shared<DiscoveredRig>(*stage.session.bones.rig);
+    rig->found.rig.joints[1].kind = kind, rig->found.rig.joints[1].axis = Vec3::UnitZ();
+    stage.session.bones.rig = rig;
+    frame(2);
+    return std::array<bool, 3>{shown("view.ring.x"), shown("view.ring.y"), shown("view.ring.z")};
+  };
+  EXPECT_EQ(rings(JointKind::Ball), (std::array<bool, 3>{true, true, true}));
+  EXPECT_EQ(rings(JointKind::Slider), (std::array<bool, 3>{}));
+  EXPECT_EQ(rings(JointKind::Fixed), (std::array<bool, 3>{}));
+  EXPECT_EQ(rings(JointKind::Hinge), (std::array<bool, 3>{true, false, false}));
+  const ImVec2 from = mark("view.ring.x").rect.at(0.5f, 0.5f);
+  drag(from, {from.x + 25, from.y + 40});
+  const Vec3 turn = vector_at(asked("bones.turn"), 2);
+  EXPECT_GT(turn.norm(), 0.1f);
+  EXPECT_LT(turn.head<2>().norm(), 1e-4f) << "about its axis";
+}
+
+TEST_F(ViewsTest, WithoutAChosenFoundBoneAnOverlaysToolIsTheTakes) {
+  stage.add_found(0);
+  stage.session.view.layout = app::Layout::Overlay;
+  stage.session.tool = app::Tool::Bones, stage.session.selected_joint = RightElbow;
+  frame(2);
+  click(seen(0, take_joint(LeftElbow)));
+  EXPECT_EQ(stage.session.selected_joint, LeftElbow);
+  EXPECT_EQ(count("bones.select"), 0);
 }
 
 TEST_F(ViewsTest, AHandIsDraggedAndItsArmFollowsInView) {

@@ -2,8 +2,9 @@
 // of a person, export.
 // Sections: bones.all, bones.one, bones.motion, bones.near. Marks: bones.auto, bones.most, bones.find,
 // bones.work (.cancel), bones.stage.K; bones.bone.K (a row), bones.surface.K, bones.name, bones.kind,
-// bones.merge, bones.split, bones.root, bones.x, .y, .z, bones.turn_x, .turn_y, .turn_z; bones.strength,
-// bones.smooth, bones.trim, bones.fit; bones.near.K, bones.name_as_joints; bones.export, bones.drop.
+// bones.merge, bones.split, bones.root, bones.x, .y, .z, bones.turn_tool, bones.turn_x, .turn_y, .turn_z;
+// bones.strength, bones.smooth, bones.trim, bones.fit; bones.near.K, bones.name_as_joints; bones.export,
+// bones.drop.
 #include <algorithm>
 #include <array>
 
@@ -194,6 +195,10 @@ void draw_place(const BonesDrawing& d, const RigJoint& joint) {
 void draw_turns(const BonesDrawing& d) {
   const int frame = app::shown_frame(d.session);
   if (app::frame_of_rig(d.found(), frame) < 0) return;
+  tool_button(d.session, d.context,
+              {"bones.turn_tool", "Turn with the mouse",
+               "By the rings around its joint; a hinge has one, sliders and what is fixed have none"},
+              app::Tool::Bones);
   for (int axis = 0; axis < 3; ++axis) {
     const std::string name(1, "xyz"[axis]);
     const auto typed =

@@ -39,20 +39,6 @@ std::string plural(size_t count, const std::string& one) {
   return std::to_string(count) + " " + one + (count == 1 ? "" : "s");
 }
 
-/// A button that takes a tool, lit while it is taken.
-void tool_button(const app::Session& session, PanelContext& context, const std::string& name,
-                 app::Tool tool) {
-  const std::string word = app::kToolNames[static_cast<size_t>(tool)],
-                    label = app::kToolLabels[static_cast<size_t>(tool)];
-  const bool taken = session.tool == tool;
-  ButtonOptions options;
-  options.look = taken ? ButtonLook::Main : ButtonLook::Plain, options.width = -1;
-  options.shortcut = keys_of(context.commands, "tool", {word});
-  options.tooltip = taken ? "Back to looking around" : label;
-  options.disabled = !possible(session, "tool");
-  if (button(context.ui, name, label, options)) context.ask("tool", {taken ? "look" : word});
-}
-
 /// `command`: also the button's name. `take`: its argument, where it has one.
 void clear_button(PanelContext& context, const std::string& command, bool any, const std::string& take = {}) {
   ask_button(context, {command, "Clear", "Clears these edits; can be undone", command + " " + take}, any);
@@ -65,7 +51,7 @@ void draw_crop(const app::Session& session, PanelContext& context) {
              {"edit.crop", "Crop", "Shows a box around everything; what you leave outside is not used"},
              crop.has_value());
   if (!crop) return;
-  tool_button(session, context, "edit.crop_tool", app::Tool::Crop);
+  tool_button(session, context, {"edit.crop_tool"}, app::Tool::Crop);
   hint(ui, "Drag the box's handles in the view, or its numbers here.");
   const Box box = app::shown_crop(session);
   for (int axis = 0; axis < 3; ++axis) {
@@ -242,7 +228,7 @@ void draw_skeleton(const app::Session& session, PanelContext& context) {
   Ui& ui = context.ui;
   if (!section(ui, "edit.skeleton", "Extracted skeleton")) return;
   const DisabledScope disabled(!possible(session, "edit.swap"));
-  tool_button(session, context, "edit.joints_tool", app::Tool::Joints);
+  tool_button(session, context, {"edit.joints_tool"}, app::Tool::Joints);
   draw_falloff(session, context, "edit.falloff");
   ask_toggle(context,
              {"edit.children", "Whole limb", "The children of a dragged joint move with it", "tool.children"},
@@ -450,7 +436,7 @@ void draw_result(const app::Session& session, PanelContext& context) {
   if (take == nullptr) return hint(ui, "Add a target first.");
   const PoseEdits& edits = take->pose_edits;
   const std::string k = std::to_string(session.selected_take);
-  tool_button(session, context, "edit.bones_tool", app::Tool::Bones);
+  tool_button(session, context, {"edit.bones_tool"}, app::Tool::Bones);
   draw_falloff(session, context, "edit.bone_falloff");
   draw_amounts(edits, context, k);
   draw_cost(selected_state(session), ui);
@@ -470,7 +456,7 @@ void draw_target(const app::Session& session, PanelContext& context) {
   if (!section(ui, "edit.target", take_title(session, "Joints of the target"), false)) return;
   const app::Take* take = selected_take(session);
   if (take == nullptr) return hint(ui, "Add a target first.");
-  tool_button(session, context, "edit.target_tool", app::Tool::TargetJoints);
+  tool_button(session, context, {"edit.target_tool"}, app::Tool::TargetJoints);
   ask_toggle(context, {"edit.mirror", "Both sides", "The joint on the other side follows", "tool.mirror"},
              session.mirror_joint);
   const auto& moved = take->target_edits.joints;
@@ -504,7 +490,7 @@ void draw_weights(const app::Session& session, PanelContext& context) {
   const app::Take* take = selected_take(session);
   if (take == nullptr) return hint(ui, "Add a target first.");
   const std::string k = std::to_string(session.selected_take);
-  tool_button(session, context, "edit.paint_tool", app::Tool::Paint);
+  tool_button(session, context, {"edit.paint_tool"}, app::Tool::Paint);
   draw_brush(session, context);
   ButtonRow buttons(2);
   for (const std::string from : {"left", "right"}) {

@@ -39,6 +39,7 @@ std::vector<MouseUse> own_uses(app::Tool tool) {
       return {{"Drag a joint of the source", "Moves it in this frame and those around"}};
     case app::Tool::Bones:
       return {{"Click a joint of the result", "Chooses its bone"},
+              {"Click a bone found in the scan", "Chooses it"},
               {"Drag a ring", "Turns the bone"},
               {"Drag a hand or a foot", "Moves it, the limb follows"}};
     case app::Tool::TargetJoints:

@@ -79,6 +79,21 @@ std::optional<double> typed_number_row(Ui& ui, const Control& control, double va
   return typed ? parse_number(*typed) : std::nullopt;
 }
 
+void tool_button(const app::Session& session, PanelContext& context, const Control& control, app::Tool tool) {
+  const std::string word = app::kToolNames[static_cast<size_t>(tool)];
+  const std::string label =
+      control.label.empty() ? app::kToolLabels[static_cast<size_t>(tool)] : control.label;
+  const bool taken = session.tool == tool;
+  ButtonOptions options;
+  options.look = taken ? ButtonLook::Main : ButtonLook::Plain, options.width = -1;
+  options.shortcut = keys_of(context.commands, "tool", {word});
+  options.tooltip = taken                         ? "Back to looking around"
+                    : control.explanation.empty() ? label
+                                                  : control.explanation;
+  options.disabled = !possible(session, "tool");
+  if (button(context.ui, control.name, label, options)) context.ask("tool", {taken ? "look" : word});
+}
+
 void color_chip(Ui& ui, const ImVec4& of) {
   const float side = ui.px(10), line = ImGui::GetTextLineHeight();
   const ImVec2 at = ImGui::GetCursorScreenPos();

@@ -13,7 +13,7 @@ namespace understudy::ui {
 
 struct Control {
   std::string name;                    ///< id and mark
-  std::string label;                   ///< of a row: grey, on the left
+  std::string label = {};              ///< of a row: grey, on the left
   std::string explanation = {};        ///< when the pointer rests on the label, a switch or a number
   std::string command = {};            ///< as a line of a script: "edit.pin 0"; empty: the name
   std::vector<std::string> tips = {};  ///< of choices, what each means
@@ -51,6 +51,9 @@ void ask_method(PanelContext& context, const Control& control, const MethodChoic
 void ask_number(PanelContext& context, const Control& control, float value, const NumberOptions& options);
 /// Over the whole width.
 void ask_button(PanelContext& context, const Control& control, bool enabled = true);
+
+/// A button that takes a tool, lit while it is taken. Without a label: called what the tool is.
+void tool_button(const app::Session& session, PanelContext& context, const Control& control, app::Tool tool);
 
 /// A small square of a colour, before what follows on the line.
 void color_chip(Ui& ui, const ImVec4& of);

@@ -102,12 +102,19 @@ Vec3 beside(const Session& session, const Points& rest) {
   return {kGapBeside * std::max(box.high.x() - box.low.x(), 0.5f * (box.high.z() - box.low.z())), 0, 0};
 }
 
-void add_painted(const Session& session, int frame, const Vec3& aside, BonesMemory& memory,
-                 render::Scene& scene) {
+/// Of the found rig in a frame of the source; null where it has no such frame.
+const RigPose* pose_in(const DiscoveredRig& rig, int frame, const FoundPreview& preview) {
+  const RigPose* const pose = at_or_null(rig.found.motion.poses, app::frame_of_rig(rig, frame));
+  return pose != nullptr && preview.pose != nullptr ? preview.pose.get() : pose;
+}
+
+void add_painted(const BonesInput& in, BonesMemory& memory, render::Scene& scene) {
+  const Session& session = in.session;
+  const int frame = in.pictures.frame;
   const auto& rig = session.bones.rig;
   const understudy::Rig& found = rig->found.rig;
-  const int at = app::frame_of_rig(*rig, frame);
-  if (at < 0) return;
+  const RigPose* const pose = pose_in(*rig, frame, in.preview);
+  if (pose == nullptr) return;
   if (memory.of != rig) {
     memory = {};
     memory.of = rig, memory.weights = found.skin.dense(found.count());
@@ -117,11 +124,10 @@ void add_painted(const Session& session, int frame, const Vec3& aside, BonesMemo
   const int selected = session.bones.selected;
   if (memory.colors->rows() == 0 || memory.selected != selected)
     memory.colors = surface_colors(memory.weights, selected), memory.selected = selected;
-  const Vec3 offset = aside + beside(session, found.surface.vertices);
-  if (memory.frame != frame || memory.offset != offset) {
-    memory.frame = frame, memory.offset = offset;
-    const Points posed = skinned(found.surface.vertices, found.skin,
-                                 bone_motions(found, rig->found.motion.poses[static_cast<size_t>(at)]));
+  const Vec3 offset = in.aside + beside(session, found.surface.vertices);
+  if (memory.frame != frame || memory.offset != offset || memory.preview.pose != in.preview.pose) {
+    memory.frame = frame, memory.offset = offset, memory.preview = in.preview;
+    const Points posed = skinned(found.surface.vertices, found.skin, bone_motions(found, *pose));
     memory.vertices = Points(posed.rowwise() + offset.transpose());
     if (!found.surface.is_cloud()) memory.normals = vertex_normals(posed, found.surface.faces);
   }
@@ -129,18 +135,18 @@ void add_painted(const Session& session, int frame, const Vec3& aside, BonesMemo
 }
 
 /// Where the scan of the frame stands, whichever frame it was found in.
-void add_so_far(const Session& session, const PanePictures& pictures, const Vec3& aside, BonesMemory& memory,
-                render::Scene& scene) {
-  const auto& found = session.bones.so_far;
+void add_so_far(const BonesInput& in, BonesMemory& memory, render::Scene& scene) {
+  const auto& found = in.session.bones.so_far;
+  const auto& scan = in.pictures.scan;
   if (memory.of != found) {
     memory = {};
     memory.of = found, memory.colors = part_colors(found->bone_of);
     memory.spacing = point_spacing(found->points);
   }
-  if (memory.vertices->rows() == 0 || memory.beside != pictures.scan || memory.offset != aside) {
-    memory.beside = pictures.scan, memory.offset = aside;
-    const Vec3 here = pictures.scan ? box_of(pictures.scan->mesh.vertices).floor() : Vec3::Zero();
-    const Vec3 moved = aside + (pictures.scan ? Vec3(here - box_of(found->points).floor()) : Vec3::Zero());
+  if (memory.vertices->rows() == 0 || memory.beside != scan || memory.offset != in.aside) {
+    memory.beside = scan, memory.offset = in.aside;
+    const Vec3 here = scan ? box_of(scan->mesh.vertices).floor() : Vec3::Zero();
+    const Vec3 moved = in.aside + (scan ? Vec3(here - box_of(found->points).floor()) : Vec3::Zero());
     memory.vertices = Points(found->points.rowwise() + moved.transpose());
   }
   render::PointsView points;
@@ -177,13 +183,14 @@ bool bones_hide_scan(const Session& session, int frame) {
          app::frame_of_rig(*bones.rig, frame) >= 0;
 }
 
-std::optional<PosedBones> posed_bones(const Session& session, const PaneContent& pane, int frame) {
+std::optional<PosedBones> posed_bones(const Session& session, const PaneContent& pane, int frame,
+                                      const FoundPreview& preview) {
   const auto& rig = session.bones.rig;
   if (!rig || !pane.source || !session.view.source.bones) return std::nullopt;
-  const int at = app::frame_of_rig(*rig, frame);
-  if (at < 0) return std::nullopt;
+  const RigPose* const pose = pose_in(*rig, frame, preview);
+  if (pose == nullptr) return std::nullopt;
   const understudy::Rig& found = rig->found.rig;
-  const BoneMotions motions = bone_motions(found, rig->found.motion.poses[static_cast<size_t>(at)]);
+  const BoneMotions motions = bone_motions(found, *pose);
   const std::vector<BoneTip> tips = bone_tips(found);
   PosedBones bones;
   bones.joints = found.count();
@@ -197,15 +204,14 @@ std::optional<PosedBones> posed_bones(const Session& session, const PaneContent&
   return bones;
 }
 
-void add_bones(const Session& session, const PaneContent& pane, const PanePictures& pictures,
-               const Vec3& aside, BonesMemory& memory, render::Scene& scene) {
-  if (session.bones.so_far) return add_so_far(session, pictures, aside, memory, scene);
+void add_bones(const BonesInput& in, BonesMemory& memory, render::Scene& scene) {
+  const Session& session = in.session;
+  if (session.bones.so_far) return add_so_far(in, memory, scene);
   if (!session.bones.rig) return;
-  if (session.view.bone_surface != BoneSurface::Off)
-    add_painted(session, pictures.frame, aside, memory, scene);
-  auto bones = posed_bones(session, pane, pictures.frame);
+  if (session.view.bone_surface != BoneSurface::Off) add_painted(in, memory, scene);
+  auto bones = posed_bones(session, in.pane, in.pictures.frame, in.preview);
   if (!bones) return;
-  bones->places.rowwise() += aside.transpose();
+  bones->places.rowwise() += in.aside.transpose();
   const float size = size_of(session.bones.rig->found.rig);
   render::SkeletonView view = skeleton_of(bones->places, bones->parents, size);
   if (session.view.source.skeleton && !hides_person(session)) view.thickness *= kBesideJoints;

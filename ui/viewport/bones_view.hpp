@@ -16,6 +16,7 @@ namespace understudy::ui {
 /// What is drawn of found bones, kept while its inputs stay the same.
 struct BonesMemory {
   std::shared_ptr<const void> of;  ///< the rig, or what is found so far
+  FoundPreview preview;
   int selected = -1, frame = -1;
   std::shared_ptr<const app::ScanPicture> beside;  ///< the scan whose place is taken
   Vec3 offset = Vec3::Zero();
@@ -25,6 +26,11 @@ struct BonesMemory {
   float spacing = 0;
 };
 
+/// What an edit under the mouse makes of the found rig in the frame shown.
+struct FoundPreview {
+  std::shared_ptr<const RigPose> pose;  ///< null: as it is
+};
+
 /// The found skeleton in a frame of the source: its joints, then where bones that carry no other end.
 struct PosedBones {
   Points places;             ///< [J and tips, 3]
@@ -32,16 +38,24 @@ struct PosedBones {
   int joints = 0;            ///< J
 };
 /// None where none is found, hidden, or the frame is not one of the rig's.
-std::optional<PosedBones> posed_bones(const app::Session& session, const PaneContent& pane, int frame);
+std::optional<PosedBones> posed_bones(const app::Session& session, const PaneContent& pane, int frame,
+                                      const FoundPreview& preview = {});
 
 /// The 22 joints are hidden where the source is no person and has bones of its own.
 bool hides_person(const app::Session& session);
 /// Whether what was found, or is found so far, is drawn in the scan's place.
 bool bones_hide_scan(const app::Session& session, int frame);
 
-/// Adds the bones, the chosen one bright, and the painted surface to a scene. All is shifted by `aside`.
-void add_bones(const app::Session& session, const PaneContent& pane, const PanePictures& pictures,
-               const Vec3& aside, BonesMemory& memory, render::Scene& scene);
+/// What bones are drawn from; all of it is shifted by `aside`.
+struct BonesInput {
+  const app::Session& session;
+  const PaneContent& pane;
+  const PanePictures& pictures;
+  const FoundPreview& preview;
+  Vec3 aside = Vec3::Zero();
+};
+/// Adds the bones, the chosen one bright, and the painted surface to a scene.
+void add_bones(const BonesInput& in, BonesMemory& memory, render::Scene& scene);
 
 /// The bone seen nearest to a pixel, within `reach` pixels; -1: none.
 int bone_at(const PaneView& view, const PosedBones& bones, const ImVec2& at, float reach);

@@ -8,6 +8,7 @@
 #include "retarget/base/index.hpp"
 #include "retarget/editing/limb_move.hpp"
 #include "retarget/math/rotation.hpp"
+#include "retarget/rig/rig_edits.hpp"
 #include "retarget/skeleton/skinning.hpp"
 #include "ui/panels/panel.hpp"
 #include "ui/viewport/pane.hpp"
@@ -56,8 +57,10 @@ std::optional<Hand::Subject> Hand::subject_of(const HandPlace& place) {
   const Session& session = place.session;
   const app::TakeState* take = first_take(session, place.pane);
   const bool rest = shows_rest(session, place.pane);
+  if (tool_on_found_bones(session, place.pane)) return found_subject(place);
   Subject subject;
   subject.take = place.pane.takes.empty() ? -1 : place.pane.takes[0];
+  subject.selected = session.selected_joint;
   if (session.tool == Tool::TargetJoints && rest) {
     subject.grip = Grip::RestJoint;
     subject.joints = take->target->joints;
@@ -84,11 +87,34 @@ std::optional<Hand::Subject> Hand::subject_of(const HandPlace& place) {
   return subject;
 }
 
+std::optional<Hand::Subject> Hand::found_subject(const HandPlace& place) {
+  const app::BonesState& bones = place.session.bones;
+  const RigPose* const pose =
+      at_or_null(bones.rig->found.motion.poses, app::frame_of_rig(*bones.rig, place.pictures.frame));
+  if (pose == nullptr) return std::nullopt;
+  const understudy::Rig& rig = bones.rig->found.rig;
+  const BoneMotions motions = bone_motions(rig, *pose);
+  Subject subject;
+  subject.grip = Grip::FoundBone;
+  subject.joints = joint_places(rig, motions);
+  const RigJoint* const joint = at_or_null(rig.joints, bones.selected);
+  if (joint == nullptr) return subject;
+  subject.selected = bones.selected;
+  subject.axes = motions[static_cast<size_t>(bones.selected)].R;
+  if (joint->kind == JointKind::Slider || joint->kind == JointKind::Fixed) subject.rings = 0;
+  if (joint->kind != JointKind::Hinge) return subject;
+  subject.rings = 1;
+  const Vec3 across = joint->axis.unitOrthogonal();
+  subject.handles << joint->axis, across, joint->axis.cross(across);
+  return subject;
+}
+
 render::GizmoView Hand::gizmo_of(const Subject& subject, int joint) {
   render::GizmoView gizmo;
   gizmo.kind = turns(subject.grip) ? render::GizmoView::Kind::Turn : render::GizmoView::Kind::Move;
   gizmo.position = subject.joints.row(joint);
-  gizmo.axes = subject.axes;
+  gizmo.axes = subject.axes * subject.handles;
+  gizmo.rings = subject.rings;
   return gizmo;
 }
 
@@ -116,10 +142,22 @@ bool Hand::work(const HandPlace& place, const Pointer& pointer, app::CommandQueu
   }
   pane_ = place.pane;
   tip_.clear();
+  on_found_ = tool_on_found_bones(place.session, place.pane);
   const Tool tool = place.session.tool;
   if (tool == Tool::Paint) return paint(place, pointer, queue);
   brush_.reset();
   return tool == Tool::Crop ? work_on_box(place, pointer, queue) : work_on_joints(place, pointer, queue);
+}
+
+/// What a click would choose: found bones along their length, other joints where they are.
+int Hand::joint_under(const HandPlace& place, const std::optional<Subject>& subject, const ImVec2& at) const {
+  if (on_found_) {
+    const auto bones = posed_bones(place.session, place.pane, place.pictures.frame);
+    return bones ? bone_at(place.view, *bones, at, kReach * place.scale) : -1;
+  }
+  if (subject) return point_at(place.view, subject->joints, at, kReach * place.scale);
+  const Joints* any = app::pane_joints(place.session, place.pane.number, place.pictures.frame);
+  return any == nullptr ? -1 : point_at(place.view, *any, at, kReach * place.scale);
 }
 
 bool Hand::work_on_joints(const HandPlace& place, const Pointer& pointer, app::CommandQueue& queue) {
@@ -129,15 +167,12 @@ bool Hand::work_on_joints(const HandPlace& place, const Pointer& pointer, app::C
     return true;
   }
   const auto subject = subject_of(place);
-  const Joints* any = app::pane_joints(place.session, place.pane.number, place.pictures.frame);
-  const Joints* joints = subject ? &subject->joints : any;
-  hovered_ = joints == nullptr ? -1 : point_at(place.view, *joints, pointer.at, kReach * place.scale);
+  hovered_ = joint_under(place, subject, pointer.at);
   handle_ = GizmoHandle::None;
   if (!subject) return false;
-  const int selected = place.session.selected_joint;
-  if (selected >= 0)
-    handle_ =
-        render::handle_under(gizmo_of(*subject, selected), place.view.camera, place.view.ray(pointer.at));
+  if (subject->selected >= 0)
+    handle_ = render::handle_under(gizmo_of(*subject, subject->selected), place.view.camera,
+                                   place.view.ray(pointer.at));
   const bool limb = subject->grip == Grip::Bone && limb_end(hovered_) >= 0;
   if (limb)
     handle_ = GizmoHandle::None;  // a hand or a foot is met before the rings around it or its neighbours
@@ -151,17 +186,20 @@ bool Hand::work_on_joints(const HandPlace& place, const Pointer& pointer, app::C
 void Hand::grab(const HandPlace& place, const Subject& subject, const Pointer& pointer,
                 app::CommandQueue& queue) {
   const Session& session = place.session;
-  joint_ = handle_ != GizmoHandle::None ? session.selected_joint : hovered_;
-  if (joint_ != session.selected_joint) queue.push_back({"select.joint", {joint_name(joint_)}});
+  joint_ = handle_ != GizmoHandle::None ? subject.selected : hovered_;
+  if (joint_ != subject.selected)
+    queue.push_back(on_found_ ? std::pair("bones.select", app::Arguments{std::to_string(joint_)})
+                              : std::pair("select.joint", app::Arguments{joint_name(joint_)}));
   if (session.playback.playing) queue.push_back({"playback.pause", {}});
   const bool limb = subject.grip == Grip::Bone && handle_ == GizmoHandle::None;
-  const bool by_rings = subject.grip == Grip::RestBone && handle_ == GizmoHandle::None;
+  const bool by_rings = turns(subject.grip) && !limb && handle_ == GizmoHandle::None;
   if (by_rings || (limb && limb_end(joint_) < 0)) return;  // other bones turn by their rings alone
   if (handle_ == GizmoHandle::None) handle_ = GizmoHandle::Centre;
   grip_ = limb ? Grip::Limb : subject.grip, settling_ = Grip::None;
   frame_ = place.pictures.frame, take_ = subject.take;
   before_ = subject.joints;
-  gizmo_ = gizmo_of(subject, joint_);
+  gizmo_ = gizmo_of(subject, joint_), handles_ = subject.handles;
+  rig_before_ = on_found_ ? session.bones.rig : nullptr;
   start_ = last_ = place.view.ray(pointer.at);
   offset_.setZero();
   corrections_.resize(0, 3);
@@ -179,9 +217,7 @@ void Hand::drag(const HandPlace& place, const Pointer& pointer) {
   const render::Ray now = place.view.ray(pointer.at);
   const render::Camera& camera = place.view.camera;
   if (turns(grip_)) {  // step by step, so that more than half a turn is one, too
-    Vec3 axis = Vec3::Zero();
-    axis[axis_of(handle_)] = 1;
-    offset_ += render::turned(gizmo_, handle_, camera, last_, now) * axis;
+    offset_ += render::turned(gizmo_, handle_, camera, last_, now) * handles_.col(axis_of(handle_));
     tip_ = figure(static_cast<double>(offset_.norm() * 180 / kPi), "deg");
   } else {
     offset_ = render::dragged(gizmo_, handle_, camera, start_, now);
@@ -198,7 +234,7 @@ void Hand::finish(const HandPlace& place, app::CommandQueue& queue) {
   grip_ = Grip::None;
   handle_ = GizmoHandle::None;
   tip_.clear();
-  if (offset_.norm() < kLeastMove) return;
+  if (offset_.norm() < kLeastMove || (grip == Grip::FoundBone && rig_before_ != session.bones.rig)) return;
   app::Arguments words;
   if (grip == Grip::Joint) {
     words = {std::to_string(frame_), joint_name(joint_)};
@@ -211,6 +247,11 @@ void Hand::finish(const HandPlace& place, app::CommandQueue& queue) {
     words << offset_;
     words.push_back(std::to_string(session.falloff));
     queue.push_back({grip == Grip::Limb ? "edit.move_limb" : "edit.rotate", words});
+  } else if (grip == Grip::FoundBone) {
+    words = {std::to_string(joint_), std::to_string(frame_)};
+    words << offset_;
+    words.push_back(std::to_string(session.falloff));
+    queue.push_back({"bones.turn", words});
   } else if (grip == Grip::RestBone) {
     words = {std::to_string(take_), joint_name(joint_)};
     words << offset_;
@@ -229,6 +270,9 @@ void Hand::finish(const HandPlace& place, app::CommandQueue& queue) {
 /// Whether the drag, or the edit just pushed, belongs to this pane and is not in its pictures yet.
 bool Hand::shown_in(const HandPlace& place) const {
   const Grip grip = current();
+  if (grip == Grip::FoundBone)
+    return place.pane == pane_ && place.pictures.frame == frame_ && place.session.bones.rig == rig_before_ &&
+           (busy() || place.session.time < settle_until_);
   const bool of_rest = grip == Grip::RestJoint || grip == Grip::RestBone;
   if (grip != Grip::Joint && !of_result(grip) && !of_rest) return false;
   if (!(place.pane == pane_)) return false;
@@ -276,12 +320,12 @@ bool Hand::beyond_reach(const Session& session) const {
 
 Joints Hand::moved_joints(const HandPlace& place) const {
   const Session& session = place.session;
-  Joints joints = before_;
+  const Joints joints = before_;
   if (current() == Grip::RestJoint) {
     JointMove move;
     move.joint = joint_, move.position = before_.row(joint_).transpose() + offset_;
     move.mirror = session.mirror_joint;
-    return understudy::apply({move}, before_);
+    return understudy::apply({move}, joints);
   }
   if (of_result(current()) || current() == Grip::RestBone) {
     const auto skeleton = turned_skeleton(session);
@@ -291,19 +335,32 @@ Joints Hand::moved_joints(const HandPlace& place) const {
   return source_drag_ ? source_drag_->joints(drag).value_or(joints) : joints;
 }
 
+/// The found rig as the drag turns it.
+FoundPreview Hand::found_preview(const HandPlace& place) const {
+  FoundPreview preview;
+  if (current() != Grip::FoundBone || !shown_in(place)) return preview;
+  const DiscoveredRig& rig = *rig_before_;
+  const RigPose& pose =
+      rig.found.motion.poses[static_cast<size_t>(app::frame_of_rig(rig, place.pictures.frame))];
+  const TurnBone turn{joint_, 0, offset_};
+  preview.pose = std::make_shared<const RigPose>(understudy::turned(rig.found.rig, pose, turn));
+  return preview;
+}
+
 EditPreview Hand::preview(const HandPlace& place) const {
   EditPreview preview;
   const Session& session = place.session;
   auto subject = subject_of(place);
-  if (shown_in(place)) {
+  preview.found = found_preview(place);
+  if (shown_in(place) && current() != Grip::FoundBone) {
     const Joints moved = moved_joints(place);
     (current() == Grip::Joint ? preview.source_joints : preview.take_joints) = moved;
     if (subject) subject->joints = moved;
   }
-  const bool chosen = session.selected_joint >= 0 && subject && !session.playback.playing &&
+  const bool chosen = subject && subject->selected >= 0 && subject->rings > 0 && !session.playback.playing &&
                       (subject->take < 0 || subject->take == session.selected_take);
   if (chosen) {
-    preview.gizmo = gizmo_of(*subject, session.selected_joint);
+    preview.gizmo = gizmo_of(*subject, subject->selected);
     if (place.pane == pane_) preview.gizmo->hovered = handle_;
   }
   if (session.tool == Tool::Crop && place.pane.source) {

@@ -38,8 +38,9 @@ class Hand {
   /// as the edit shows.
   std::shared_ptr<const app::PosedPicture> turned_picture(const HandPlace& place) const;
 
-  /// The joint under the pointer in a pane, -1 for none.
-  int hovered_joint(const PaneContent& pane) const { return pane == pane_ ? hovered_ : -1; }
+  /// The joint, or the found bone, under the pointer in a pane, -1 for none.
+  int hovered_joint(const PaneContent& pane) const { return pane == pane_ && !on_found_ ? hovered_ : -1; }
+  int hovered_bone(const PaneContent& pane) const { return pane == pane_ && on_found_ ? hovered_ : -1; }
   /// Where the brush is on a pane's surface, and the surface's normal there.
   struct BrushPlace {
     Vec3 position, normal;
@@ -51,17 +52,23 @@ class Hand {
   const std::string& tip() const { return tip_; }
 
  private:
-  enum class Grip { None, Joint, Bone, Limb, RestJoint, RestBone, Face, Paint };
-  /// A skeleton that a tool works on: the extracted one, a take's, or a target's in T-pose.
+  enum class Grip { None, Joint, Bone, Limb, RestJoint, RestBone, FoundBone, Face, Paint };
+  /// A skeleton that a tool works on: the extracted one, a take's, a target's in T-pose, or a found one.
   struct Subject {
     Grip grip = Grip::None;
     int take = -1;
-    Joints joints;
-    Mat3 axes = Mat3::Identity();  ///< of the selected joint
+    Points joints{0, 3};
+    int selected = -1;             ///< of them
+    Mat3 axes = Mat3::Identity();  ///< of the selected one
+    /// What its handles are about, in those axes; a hinge has one ring, what does not turn none.
+    Mat3 handles = Mat3::Identity();
+    int rings = 3;
   };
   void leave();
   static std::optional<Subject> subject_of(const HandPlace& place);
+  static std::optional<Subject> found_subject(const HandPlace& place);
   static render::GizmoView gizmo_of(const Subject& subject, int joint);
+  int joint_under(const HandPlace& place, const std::optional<Subject>& subject, const ImVec2& at) const;
   bool work_on_joints(const HandPlace& place, const Pointer& pointer, app::CommandQueue& queue);
   void grab(const HandPlace& place, const Subject& subject, const Pointer& pointer, app::CommandQueue& queue);
   void drag(const HandPlace& place, const Pointer& pointer);
@@ -75,26 +82,32 @@ class Hand {
   /// A turned bone, or a limb: what is shown of it is made the same way.
   static bool of_result(Grip grip) { return grip == Grip::Bone || grip == Grip::Limb; }
   /// Turned by the rings of a gizmo.
-  static bool turns(Grip grip) { return grip == Grip::Bone || grip == Grip::RestBone; }
+  static bool turns(Grip grip) {
+    return grip == Grip::Bone || grip == Grip::RestBone || grip == Grip::FoundBone;
+  }
   std::optional<Pose> grasped_pose(const app::Session& session) const;
   std::optional<PosedSkeleton> turned_skeleton(const app::Session& session) const;
   bool beyond_reach(const app::Session& session) const;
   bool shown_in(const HandPlace& place) const;
+  FoundPreview found_preview(const HandPlace& place) const;
   std::shared_ptr<const app::PosedPicture> released_picture(const HandPlace& place) const;
 
   Grip grip_ = Grip::None;
   PaneContent pane_;  ///< the one that the pointer is in or the drag began in
   int hovered_ = -1;
+  bool on_found_ = false;  ///< the tool is about found bones there, and so is what is hovered
   render::GizmoHandle handle_ = render::GizmoHandle::None;  ///< under the pointer, or gripped
   std::string tip_;
 
   // While something is gripped, and shortly after, until the edit shows.
   int joint_ = -1, frame_ = -1, take_ = -1;
-  Joints before_ = Joints::Zero();
+  Points before_{0, 3};
   std::optional<Pose> pose_before_;  ///< of a turned bone or a limb
   render::GizmoView gizmo_;
   render::Ray start_{}, last_{};
-  Vec3 offset_ = Vec3::Zero();  ///< metres, world; of Bone: axis times angle, in the joint's frame
+  Mat3 handles_ = Mat3::Identity();  ///< of the subject
+  Vec3 offset_ = Vec3::Zero();       ///< metres, world; of what turns: axis times angle, in the joint's frame
+  std::shared_ptr<const DiscoveredRig> rig_before_;  ///< of FoundBone
   std::optional<app::SourceDrag> source_drag_;  ///< of Joint
   Points corrections_{0, 3};  ///< of a turned bone or a limb: pose-corrective offsets when it was gripped
   /// A bone of the rest pose as it was released, and what the pane showed then.

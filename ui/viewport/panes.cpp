@@ -214,9 +214,14 @@ Vec3 aside(const Session& session, const PaneContent& pane, int person) {
   return overlaid ? app::spread_offset(session, person) : Vec3(Vec3::Zero());
 }
 
+bool tool_on_found_bones(const Session& session, const PaneContent& pane) {
+  return session.tool == app::Tool::Bones && pane.source && session.view.source.bones && session.bones.rig &&
+         (pane.takes.empty() || session.bones.selected >= 0);
+}
+
 int person_of_tool(const Session& session, const PaneContent& pane) {
-  const bool of_source =
-      session.tool == app::Tool::Look || session.tool == app::Tool::Joints || session.tool == app::Tool::Crop;
+  const bool of_source = session.tool == app::Tool::Look || session.tool == app::Tool::Joints ||
+                         session.tool == app::Tool::Crop || tool_on_found_bones(session, pane);
   return of_source || pane.takes.empty() ? pane.number : pane.takes[0] + 1;
 }
 

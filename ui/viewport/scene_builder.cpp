@@ -215,7 +215,7 @@ void Builder::add_scan() {
   const Joints* joints = app::pane_joints(session_, 0, in_.pictures.frame);
   if (in_.preview.source_joints) joints = &*in_.preview.source_joints;
   if (joints != nullptr && !hides_person(session_)) add_skeleton(*joints, layers, 0);
-  add_bones(session_, in_.pane, in_.pictures, aside_of(0), memory_.bones, out_.scene);
+  add_bones({session_, in_.pane, in_.pictures, in_.preview.found, aside_of(0)}, memory_.bones, out_.scene);
 }
 
 void Builder::add_take(size_t i) {

@@ -22,6 +22,7 @@ struct EditPreview {
   std::optional<Box> crop;              ///< in place of the document's
   int crop_face = -1;                   ///< the one under the pointer, in the order of kBoxSides
   std::optional<render::GizmoView> gizmo;
+  FoundPreview found;
 };
 
 /// A surface's colours, kept while their inputs stay the same.

@@ -430,7 +430,8 @@ void Views::describe(const Session& session, const Pane& pane, const Theme& look
   if (rest) joints = &at_rest.emplace(rest_joints(session, pane.content.takes[0]));
   const auto& moved = person == 0 ? pane.preview.source_joints : pane.preview.take_joints;
   if (moved) joints = &*moved;
-  const int selected = pane.preview.gizmo ? session.selected_joint : -1;
+  const bool on_joints = pane.preview.gizmo && !tool_on_found_bones(session, pane.content);
+  const int selected = on_joints ? session.selected_joint : -1;
   const bool no_joints = person == 0 && hides_person(session);
   if (joints != nullptr && !no_joints)
     overlay.labels = joint_labels(view, *joints, layers.joint_names && layers.skeleton,
@@ -451,11 +452,13 @@ void Views::describe(const Session& session, const Pane& pane, const Theme& look
 
 /// The bone that was found in the scan and lies under the pointer; -1: none.
 int Views::bone_at_pointer(const Session& session, const Pane& pane) const {
-  return under_ == &pane && session.tool == app::Tool::Look ? bone_under(session, pane, pointer_.at) : -1;
+  if (session.tool != app::Tool::Look) return hand_.hovered_bone(pane.content);
+  return under_ == &pane ? bone_under(session, pane, pointer_.at) : -1;
 }
 
 void Views::label_bones(const Session& session, const Pane& pane, Overlay& overlay) const {
-  const auto bones = posed_bones(session, pane.content, pane.keeper.pictures().frame);
+  const auto bones =
+      posed_bones(session, pane.content, pane.keeper.pictures().frame, pane.preview.found);
   if (!bones) return;
   for (Overlay::Label& label : bone_labels(session, pane.view.shifted(aside(session, pane.content, 0)),
                                            *bones, bone_at_pointer(session, pane)))
@@ -480,7 +483,7 @@ void Views::mark_rings(const Frame& f, const Pane& pane) const {
   if (!gizmo || gizmo->kind != render::GizmoView::Kind::Turn) return;
   const PaneView view = tool_view(f.session, pane);
   const Vec3 to_eye = render::eye(view.camera) - gizmo->position;
-  for (int axis = 0; axis < 3; ++axis) {
+  for (int axis = 0; axis < gizmo->rings; ++axis) {
     const Vec3 side = gizmo->axes.col(axis).cross(to_eye).normalized();
     const auto at = view.project(gizmo->position + render::gizmo_reach(*gizmo, view.camera) * side);
     if (!at) continue;

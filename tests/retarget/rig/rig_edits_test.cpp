@@ -363,6 +363,17 @@ TEST(TurnBone, FadesToBothSides) {
   EXPECT_LT(apart(before, after), kSame);
 }
 
+TEST(TurnBone, OfOnePoseIsWhatTheEditMakesOfItsFrame) {
+  RiggedMotion tube = moving_tube();
+  for (const int joint : {1, 2}) {  // a ball, a hinge
+    const TurnBone edit{joint, 6, {0.3f, -0.2f, 0.8f}, 3};
+    const RigPose one = turned(tube.rig, tube.motion.poses[6], edit);
+    apply(tube, edit);
+    EXPECT_EQ(one.turns, tube.motion.poses[6].turns) << joint;
+  }
+  EXPECT_THROW(turned(tube.rig, tube.motion.poses[6], TurnBone{7, 6}), Error);
+}
+
 TEST(TurnBone, OfAHingeIsAboutItsAxis) {
   RiggedMotion tube = moving_tube();
   const Mat3 before = tube.motion.poses[5].turns[2];

@@ -135,6 +135,28 @@ struct Stage {
     session.takes.push_back(std::move(state));
   }
 
+  /// A skeleton found in the source: hips, and an arm that has what is above 1.4 m. It goes along x.
+  void add_found(float step_m = 0.1f) {
+    auto rig = std::make_shared<DiscoveredRig>();
+    understudy::Rig& found = rig->found.rig;
+    found.joints = {{"hips", -1, JointKind::Free, Vec3(0, 0.9f, 0)},
+                    {"arm", 0, JointKind::Ball, Vec3(0, 1.4f, 0)}};
+    found.surface = mesh;
+    std::vector<int> bones;
+    for (Eigen::Index v = 0; v < mesh.vertices.rows(); ++v)
+      bones.push_back(mesh.vertices(v, 1) > 1.4f ? 1 : 0);
+    found.skin = SkinWeights::rigid(bones);
+    const size_t frames = session.source.frames.size();
+    for (size_t t = 0; t < frames; ++t) {
+      RigPose pose = rest_pose(found);
+      pose.root.x() += step_m * static_cast<float>(t);
+      rig->found.motion.poses.push_back(pose);
+    }
+    rig->bones.resize(2), rig->off_m.assign(frames, 0.f), rig->doubted.assign(frames, false);
+    session.document.bones.wanted = true;
+    session.bones.rig = rig;
+  }
+
   void show_frame(int f) {
     session.playback.live = false;
     session.playback.frame = f;
