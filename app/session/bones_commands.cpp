@@ -139,6 +139,17 @@ void split_bone(Call& c) {
   c.studio.edit_bones(edit);
 }
 
+void paint_bone(Call& c) {
+  PaintBone edit;
+  edit.joint = bone(c, 0);
+  edit.radius_m = c.number(1, "radius");
+  edit.strength = c.number(2, "strength");
+  edit.mode = c.choice<BrushMode>(3, "mode", kBrushModeNames);
+  for (size_t i = 4; i < c.arguments.size(); i += 3) edit.at.push_back(c.vector(i, "place"));
+  c.label = "Paint weights of " + name_of_bone(c, edit.joint);
+  c.studio.edit_bones(edit);
+}
+
 void add_tree_edits(Commands& commands) {
   commands.add_edit({"bones.merge", "Merge bone", "BONE: becomes one with what it hangs on"}, [](Call& c) {
     const int joint = bone(c, 0);
@@ -163,16 +174,9 @@ void add_tree_edits(Commands& commands) {
     c.label = "Move " + name_of_bone(c, joint);
     c.studio.edit_bones(MoveJoint{joint, c.vector(1, "place")});
   });
-  commands.add_edit({"bones.paint", "Paint weights", "BONE X Y Z RADIUS STRENGTH add|subtract"}, [](Call& c) {
-    PaintBone edit;
-    edit.joint = bone(c, 0);
-    edit.at = c.vector(1, "place");
-    edit.radius_m = c.number(4, "radius");
-    edit.strength = c.number(5, "strength");
-    edit.adds = c.choice(6, "mode", {"add", "subtract"}) == 0;
-    c.label = "Paint weights of " + name_of_bone(c, edit.joint);
-    c.studio.edit_bones(edit);
-  });
+  commands.add_edit({"bones.paint", "Paint weights",
+                     "BONE RADIUS STRENGTH add|subtract|smooth X Y Z...: a stroke over these places at rest"},
+                    paint_bone);
 }
 
 void turn_bone(Call& c) {

@@ -68,7 +68,7 @@ void add_brush(Commands& commands) {
   commands.add({"tool.brush_strength", "Brush strength", "0 to 1"},
                [](Call& c) { c.session.brush.strength = c.clamped(0, "strength", 0.f, 1.f); });
   commands.add({"tool.brush_mode", "Brush mode", "add|subtract|smooth"}, [](Call& c) {
-    c.session.brush.mode = static_cast<Brush::Mode>(c.choice(0, "mode", {"add", "subtract", "smooth"}));
+    c.session.brush.mode = c.choice<BrushMode>(0, "mode", kBrushModeNames);
   });
 }
 

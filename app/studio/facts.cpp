@@ -72,6 +72,14 @@ std::string bone_turn(const Session& session) {
   return printed("%.0f", static_cast<double>(geodesic_angle(*turn, Mat3::Identity()) * 180 / kPi));
 }
 
+/// What the chosen found bone weighs on its surface, in vertices; "none" without one.
+std::string bone_weights(const Session& session) {
+  const int bone = session.bones.selected;
+  if (!session.bones.rig || bone < 0) return "none";
+  const SkinWeights& skin = session.bones.rig->found.rig.skin;
+  return printed("%.3f", static_cast<double>((skin.bones.array() == bone).select(skin.weights, 0).sum()));
+}
+
 }  // namespace
 
 std::vector<std::pair<std::string, std::string>> facts(const Session& session) {
@@ -87,6 +95,7 @@ std::vector<std::pair<std::string, std::string>> facts(const Session& session) {
       {"bones", std::to_string(session.bones.rig ? session.bones.rig->found.rig.count() : 0)},
       {"bone", std::to_string(session.bones.selected)},
       {"bone_turn", bone_turn(session)},
+      {"bone_weights", bone_weights(session)},
       {"bones_stage", session.bones.job != 0 ? session.bones.stage : "none"},
       {"people", count(session.source.people.size())},
       {"person", std::to_string(session.source.person)},

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "retarget/base/fields.hpp"
+#include "retarget/geometry/brush_mode.hpp"
 #include "retarget/geometry/mesh.hpp"
 #include "retarget/skeleton/skeleton.hpp"
 
@@ -83,7 +84,7 @@ struct Neighbours {
 };
 
 struct Brush {
-  enum class Mode { Add, Subtract, Smooth };
+  using Mode = BrushMode;
   int joint = 0;  ///< the one painted; Smooth smooths all
   float radius_m = 0.05f;
   float strength = 0.5f;  ///< 0..1, of one dab at its centre

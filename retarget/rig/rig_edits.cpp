@@ -12,6 +12,7 @@
 #include "retarget/base/error.hpp"
 #include "retarget/base/index.hpp"
 #include "retarget/base/union_find.hpp"
+#include "retarget/geometry/point_tree.hpp"
 #include "retarget/math/rotation.hpp"
 #include "retarget/math/smooth_step.hpp"
 #include "retarget/math/time_filter.hpp"
@@ -325,10 +326,10 @@ void change(RiggedMotion& performed, const RenameBone& edit) {
 }
 
 /// Vertices in the brush that hang together with its middle there.
-std::vector<Eigen::Index> under_brush(const Mesh& surface, const PaintBone& brush) {
+std::vector<Eigen::Index> under_brush(const Mesh& surface, const PaintBone& brush, const Vec3& at) {
   const Points& places = surface.vertices;
   if (places.rows() == 0) return {};
-  const Eigen::VectorXf far = (places.rowwise() - brush.at.transpose()).rowwise().norm();
+  const Eigen::VectorXf far = (places.rowwise() - at.transpose()).rowwise().norm();
   const auto inside = [&](Eigen::Index v) { return far[v] < brush.radius_m; };
   UnionFind pieces(static_cast<size_t>(places.rows()));
   std::map<std::array<float, 3>, int> first_at;  // exporters split vertices where textures have seams
@@ -351,22 +352,23 @@ std::vector<Eigen::Index> under_brush(const Mesh& surface, const PaintBone& brus
 void paint_row(SkinWeights& skin, Eigen::Index v, const PaintBone& brush, float amount, int heir) {
   auto weights = skin.weights.row(v);
   auto bones = skin.bones.row(v);
+  const bool adds = brush.mode == BrushMode::Add;
   int own = -1, least = 0;
   for (int k = 0; k < kSkinBones; ++k) {
     if (bones[k] == brush.joint && weights[k] > 0) own = k;
     if (weights[k] < weights[least]) least = k;
   }
   if (own < 0) {
-    if (!brush.adds || amount < weights[least]) return;
+    if (!adds || amount < weights[least]) return;
     own = least;
     bones[own] = brush.joint;
     weights[own] = 0;
   }
   const float others = weights.sum() - weights[own],
-              wanted = brush.adds ? weights[own] + amount * (1 - weights[own]) : weights[own] * (1 - amount);
+              wanted = adds ? weights[own] + amount * (1 - weights[own]) : weights[own] * (1 - amount);
   if (others > kNoWeight) {
     weights *= (1 - wanted) / others;
-  } else if (!brush.adds && heir >= 0) {
+  } else if (!adds && heir >= 0) {
     const int slot = own == 0 ? 1 : 0;
     bones[slot] = heir;
     weights.setZero();
@@ -378,19 +380,48 @@ void paint_row(SkinWeights& skin, Eigen::Index v, const PaintBone& brush, float 
   weights /= weights.sum();
 }
 
+/// `amounts`: of the way to the mean, of each vertex under a dab.
+void smooth_rows(Rig& rig, const std::vector<Eigen::Index>& under, const std::vector<float>& amounts) {
+  constexpr int kNearest = 7;  // itself and six more
+  if (under.empty()) return;
+  const PointTree tree(rig.surface.vertices(under, Eigen::all));
+  const SkinWeights skin{rig.skin.bones(under, Eigen::all), rig.skin.weights(under, Eigen::all)};
+  const RowMatrix before = skin.dense(rig.count());
+  RowMatrix after = before;
+  std::vector<PointTree::Near> near;
+  for (Eigen::Index i = 0; i < before.rows(); ++i) {
+    tree.nearest(tree.points().row(i).transpose(), kNearest, near);
+    Eigen::RowVectorXf mean = Eigen::RowVectorXf::Zero(before.cols());
+    for (const PointTree::Near& one : near) mean += before.row(one.point) / static_cast<float>(near.size());
+    after.row(i) += amounts[static_cast<size_t>(i)] * (mean - before.row(i));
+  }
+  const SkinWeights smooth = SkinWeights::from(after);
+  rig.skin.bones(under, Eigen::all) = smooth.bones;
+  rig.skin.weights(under, Eigen::all) = smooth.weights;
+}
+
+void dab(Rig& rig, const PaintBone& edit, const Vec3& at) {
+  const int parent = rig.joints[static_cast<size_t>(edit.joint)].parent;
+  const int heir = parent >= 0 ? parent : rig.count() > 1 ? 1 : -1;
+  const std::vector<Eigen::Index> under = under_brush(rig.surface, edit, at);
+  std::vector<float> amounts;
+  for (const Eigen::Index v : under) {
+    const float far = (rig.surface.vertices.row(v).transpose() - at).norm() / edit.radius_m;
+    amounts.push_back(edit.strength * (1 - smooth_step(0, 1, far)));
+  }
+  if (edit.mode == BrushMode::Smooth) return smooth_rows(rig, under, amounts);
+  for (size_t i = 0; i < under.size(); ++i) paint_row(rig.skin, under[i], edit, amounts[i], heir);
+}
+
 void change(RiggedMotion& performed, const PaintBone& edit) {
-  Rig& rig = performed.rig;
-  const int parent = joint_of(rig, edit.joint).parent;
-  check_place(edit.at);
+  joint_of(performed.rig, edit.joint);
+  US_CHECK(!edit.at.empty(), "a stroke without a place paints nothing");
+  for (const Vec3& at : edit.at) check_place(at);
   US_CHECK(edit.radius_m > 0 && std::isfinite(edit.radius_m), "a brush of ", edit.radius_m,
            " metres paints nothing");
   US_CHECK(edit.strength >= 0 && edit.strength <= 1, "a brush's strength must be in 0..1, not ",
            edit.strength);
-  const int heir = parent >= 0 ? parent : rig.count() > 1 ? 1 : -1;
-  for (const Eigen::Index v : under_brush(rig.surface, edit)) {
-    const float far = (rig.surface.vertices.row(v).transpose() - edit.at).norm() / edit.radius_m;
-    paint_row(rig.skin, v, edit, edit.strength * (1 - smooth_step(0, 1, far)), heir);
-  }
+  for (const Vec3& at : edit.at) dab(performed.rig, edit, at);
 }
 
 /// As much of the turn as the joint allows.

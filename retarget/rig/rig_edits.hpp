@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "retarget/base/fields.hpp"
+#include "retarget/geometry/brush_mode.hpp"
 #include "retarget/rig/rig.hpp"
 
 namespace understudy {
@@ -93,17 +94,18 @@ FieldsOf<S, RenameBone> fields(V& visit, S& edit) {
   visit("name", edit.name);
 }
 
-/// One dab of a brush on the rest surface. It falls off smoothly to nothing at its radius, and reaches only
-/// what hangs together with its middle within the radius (of clouds: all). The bone's weight grows towards 1
-/// or shrinks towards 0; the others of the vertex share the rest as before, where there are none it is the
-/// parent's (of the root: of the first that hangs on it). Of five bones the least one goes, be it the painted
-/// one.
+/// A stroke of a brush on the rest surface, dab by dab. A dab falls off smoothly to nothing at its radius, and
+/// reaches only what hangs together with its middle within the radius (of clouds: all). The bone's weight
+/// grows towards 1 or shrinks towards 0; the others of the vertex share the rest as before, where there are
+/// none it is the parent's (of the root: of the first that hangs on it). Smooth brings all weights of a vertex
+/// nearer to their mean over it and the six nearest under the dab. Of five bones the least one goes, be it
+/// the painted one. Refused without a dab.
 struct PaintBone {
   int joint = 0;
-  Vec3 at = Vec3::Zero();  ///< on the rest surface, metres
+  std::vector<Vec3> at{};  ///< the dabs' middles on the rest surface, metres
   float radius_m = 0.05f;
-  float strength = 0.5f;  ///< 0 .. 1, in the middle
-  bool adds = true;       ///< else it takes away
+  float strength = 0.5f;  ///< 0 .. 1, of a dab in its middle
+  BrushMode mode = BrushMode::Add;
 };
 template <class V, class S>
 FieldsOf<S, PaintBone> fields(V& visit, S& edit) {
@@ -111,7 +113,7 @@ FieldsOf<S, PaintBone> fields(V& visit, S& edit) {
   visit("at", edit.at);
   visit("radius_m", edit.radius_m);
   visit("strength", edit.strength, Within<float>{0, 1});
-  visit("adds", edit.adds);
+  visit("mode", edit.mode, kBrushModeNames);
 }
 
 /// A bone turned further at one frame; the frames around follow less and less (falloff_weight). A hinge turns

@@ -68,7 +68,7 @@ std::vector<RigEdit> rig_edits() {
           SetJointKind{4, JointKind::Hinge, Vec3(0, 0.6f, 0.8f)},
           RootAt{2},
           RenameBone{1, "tail \"one\""},
-          PaintBone{5, Vec3(0.3f, 0.2f, 0.1f), 0.04f, 0.75f, false},
+          PaintBone{5, {Vec3(0.3f, 0.2f, 0.1f), Vec3(0, 1 / 3.0f, 0)}, 0.04f, 0.75f, BrushMode::Subtract},
           TurnBone{3, 17, Vec3(0.1f, 0, -0.2f), 9},
           SmoothBones{4, 2, 30, 0.25f},
           KeepFrames{1, 40},

@@ -219,7 +219,7 @@ TEST_F(Bones, TakeEveryKindOfEdit) {
   studio.run("bones.turn", {"1", "5", "0", "0", "0.5", "2"});
   EXPECT_GT((studio.session().bones.rig->found.motion.poses[5].turns[1] - before).norm(), 0.3f);
   studio.run("bones.smooth", {"0.5"});
-  studio.run("bones.paint", {"0", "0.7", "0.05", "0", "0.1", "1", "add"});
+  studio.run("bones.paint", {"0", "0.1", "1", "add", "0.7", "0.05", "0"});
   studio.run("bones.trim", {"2", "8"});
   EXPECT_EQ(studio.session().bones.rig->found.motion.poses.size(), 7u);
   EXPECT_EQ(frame_of_rig(*studio.session().bones.rig, 2), 0);
@@ -255,6 +255,38 @@ TEST_F(Bones, ATurnIsOneStepThatGoesAndComes) {
   studio.tick(0);
   EXPECT_EQ(studio.session().bones.rig, turned);
   EXPECT_EQ(studio.session().bones.job, 0) << "no new search";
+}
+
+TEST_F(Bones, AStrokeOfTheBrushIsOneStepAndIsThereAgainWhenOpened) {
+  std::shared_ptr<const DiscoveredRig> painted;
+  {
+    Studio studio(services());
+    find(studio);
+    const auto found = studio.session().bones.rig;
+    Arguments words{"1", "0.1", "0.8", "add"};
+    const Points& rest = rig(studio).surface.vertices;
+    for (const Eigen::Index v : {0, 40, 80})  // three dabs
+      for (int axis = 0; axis < 3; ++axis) words.push_back(std::to_string(rest(v, axis)));
+    studio.run("bones.paint", words);
+    EXPECT_EQ(undo_label(studio.session()), "Paint weights of bone 1");
+    EXPECT_EQ(studio.session().document.bones.edits.size(), 1u);
+    painted = studio.session().bones.rig;
+    const auto weight = [](const DiscoveredRig& rig) { return rig.found.rig.skin.dense(2).col(1).sum(); };
+    EXPECT_GT(weight(*painted), weight(*found) + 1) << "of vertices";
+    studio.run("edit.undo");
+    studio.tick(0);
+    EXPECT_EQ(studio.session().bones.rig, found) << "all of the stroke at once";
+    studio.run("edit.redo");
+    studio.tick(0);
+    EXPECT_EQ(studio.session().bones.rig, painted);
+    EXPECT_NE(refusal([&] { studio.run("bones.paint", {"1", "0.1", "0.8", "add"}); }), "") << "nowhere";
+    studio.run("document.save_as", {path("painted.understudy")});
+  }
+  Studio studio(services());
+  studio.run("document.open", {path("painted.understudy")});
+  studio.wait_idle();
+  ASSERT_TRUE(studio.session().bones.rig);
+  EXPECT_TRUE(same_rigs(*painted, *studio.session().bones.rig));
 }
 
 TEST_F(Bones, RefuseWhatCannotBeDoneAndStayAsTheyWere) {

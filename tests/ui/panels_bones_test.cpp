@@ -88,6 +88,14 @@ TEST_F(BonesPanel, EditsTheChosenBone) {
   expect_typed("bones.y", "0.25", {"bones.move 2 0 0.25 0"});
   expect_click("bones.kind.1", {"bones.kind 2 hinge"});
   session.falloff = 7;
+  EXPECT_FALSE(shown("bones.brush_radius")) << "nothing is painted";
+  expect_click("bones.paint_tool", {"tool paint"});
+  session.tool = app::Tool::Paint;
+  frame(2);
+  expect_click("bones.brush_mode.1", {"tool.brush_mode subtract"});
+  expect_click("bones.paint_tool", {"tool look"});
+  session.tool = app::Tool::Look;
+  frame(2);
   expect_click("bones.turn_tool", {"tool bones"});
   expect_typed("bones.turn_z", "90", {"bones.turn 2 20 0 0 1.5708"});
   session.bones.selected = 0;

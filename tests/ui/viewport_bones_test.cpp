@@ -3,6 +3,7 @@
 
 #include <set>
 
+#include "render/colors.hpp"
 #include "retarget/rig/rig_edits.hpp"
 #include "tests/ui/support/viewport_stage.hpp"
 #include "ui/viewport/pane.hpp"
@@ -20,12 +21,15 @@ struct BonesScene : testing::Test {
     pictures_of(session, *stage.cache, content, pane_frame(session, content));
     stage.cache->wait();
     last = pictures_of(session, *stage.cache, content, pane_frame(session, content)).value();
-    return build_scene({session, content, last, {}, preview, ThemeKind::Dark}, memory).scene;
+    PaneScene made = build_scene({session, content, last, {}, preview, ThemeKind::Dark}, memory);
+    legend = made.legend;
+    return made.scene;
   }
   Stage stage;
   app::Session& session = stage.session;
   SceneMemory memory;
   PanePictures last;
+  Legend legend;
 };
 
 TEST_F(BonesScene, AreDrawnBesideTheJointsOfAPersonInTheirOwnColour) {
@@ -86,6 +90,31 @@ TEST_F(BonesScene, ABoneThatIsBeingTurnedIsSeenTurned) {
   for (Eigen::Index v = 0; v < was.rows(); ++v)
     EXPECT_EQ((now.row(v) - was.row(v)).norm() > 1e-3f, stage.mesh.vertices(v, 1) > 1.41f) << v;
   EXPECT_EQ(*scene().meshes[0].vertices, was) << "let go";
+}
+
+TEST_F(BonesScene, WhileItIsPaintedTheSurfaceShowsTheWeightsOfTheChosenBone) {
+  session.bones.selected = 1;
+  session.tool = app::Tool::Paint;
+  const render::Scene before = scene();
+  ASSERT_EQ(before.meshes.size(), 1u) << "though the surface by bone is off";
+  EXPECT_TRUE(before.clouds.empty()) << "in place of the scan";
+  const Eigen::Index arm = [&] {
+    Eigen::Index top = 0;
+    stage.mesh.vertices.col(1).maxCoeff(&top);
+    return top;
+  }();
+  EXPECT_EQ(Vec3(before.meshes[0].colors->row(arm)), render::viridis(1));
+  EXPECT_EQ(legend.title, "Weight, arm");
+  const understudy::Rig& rig = session.bones.rig->found.rig;
+  RiggedMotion painted{rig, {}};
+  apply(painted, PaintBone{1, {rig.surface.vertices.row(arm)}, 0.1f, 1, BrushMode::Subtract});
+  EditPreview preview;
+  preview.found.skin = std::make_shared<const SkinWeights>(painted.rig.skin);
+  EXPECT_LT((Vec3(scene(preview).meshes[0].colors->row(arm)) - render::viridis(0)).norm(), 0.01f)
+      << "as the stroke goes on";
+  session.tool = app::Tool::Look;
+  EXPECT_TRUE(scene().meshes.empty());
+  EXPECT_EQ(legend.title, "");
 }
 
 TEST_F(BonesScene, ABoneIsMetWhereItIsSeen) {

@@ -681,6 +681,32 @@ TEST_F(ViewsTest, PaintingAsksForDabsOnTheTPose) {
   EXPECT_LT((rest.rowwise() - dab.transpose()).rowwise().norm().minCoeff(), 0.03f);  // on the surface
 }
 
+TEST_F(ViewsTest, AStrokeOverAFoundSurfaceIsOneEditOfItsChosenBone) {
+  stage.add_found(0);
+  stage.session.tool = app::Tool::Paint;
+  stage.session.brush.mode = BrushMode::Subtract;
+  frame(3);
+  const ImVec2 from = seen(0, Vec3(0.02f, 1.3f, 0)), to = seen(0, Vec3(0.02f, 1.1f, 0));
+  drag(from, to);
+  EXPECT_EQ(count("bones.paint"), 0) << "no bone is chosen";
+  click(seen(0, Vec3(0, 1.4f, 0)));
+  EXPECT_EQ(stage.session.bones.selected, 1) << "by its joint";
+  EXPECT_EQ(count("bones.paint"), 0);
+  frame(3);
+  drag(from, to);
+  EXPECT_EQ(count("bones.paint"), 1);
+  EXPECT_EQ(count("edit.paint") + count("view.camera_state"), 0);
+  const app::Arguments words = asked("bones.paint");
+  EXPECT_EQ(words[0], "1");
+  EXPECT_EQ(words[3], "subtract");
+  ASSERT_GE(words.size(), 4u + 2 * 3) << "dabs along the way";
+  ASSERT_EQ((words.size() - 4) % 3, 0u);
+  for (size_t i = 4; i < words.size(); i += 3) {
+    const Points& rest = stage.mesh.vertices;
+    EXPECT_LT((rest.rowwise() - vector_at(words, i).transpose()).rowwise().norm().minCoeff(), 0.03f);
+  }
+}
+
 TEST_F(ViewsTest, WithoutAJointNothingIsPainted) {
   stage.session.tool = app::Tool::Paint;
   const ImVec2 from = seen(1, take_joint(Spine2));

@@ -3,8 +3,8 @@
 // Sections: bones.all, bones.one, bones.motion, bones.near. Marks: bones.auto, bones.most, bones.find,
 // bones.work (.cancel), bones.stage.K; bones.bone.K (a row), bones.surface.K, bones.name, bones.kind,
 // bones.merge, bones.split, bones.root, bones.x, .y, .z, bones.turn_tool, bones.turn_x, .turn_y, .turn_z;
-// bones.strength, bones.smooth, bones.trim, bones.fit; bones.near.K, bones.name_as_joints; bones.export,
-// bones.drop.
+// bones.paint_tool, bones.brush_radius, .brush_strength, .brush_mode; bones.strength, bones.smooth,
+// bones.trim, bones.fit; bones.near.K, bones.name_as_joints; bones.export, bones.drop.
 #include <algorithm>
 #include <array>
 
@@ -214,6 +214,16 @@ void draw_turns(const BonesDrawing& d) {
   }
 }
 
+/// Painted with the mouse, on the surface in the view.
+void draw_weights_of_bone(const BonesDrawing& d, int joint) {
+  row_text(d.ui(), "Moves",
+           std::to_string(d.state.vertices[static_cast<size_t>(joint)]) + " points of the surface");
+  tool_button(d.session, d.context,
+              {"bones.paint_tool", "Paint its weights", "On the surface in the view, with a brush"},
+              app::Tool::Paint);
+  if (d.session.tool == app::Tool::Paint) brush_rows(d.session, d.context, "bones");
+}
+
 /// Edits of the chosen bone.
 void draw_one(const BonesDrawing& d) {
   const int j = d.bones().selected;
@@ -229,8 +239,7 @@ void draw_one(const BonesDrawing& d) {
         d.context, {"bones.kind", "Kind", "How it may move against what it hangs on", "bones.kind " + k},
         {"Ball", "Hinge", "Slider", "Fixed"}, words, kJointKindNames[static_cast<size_t>(joint->kind)]);
   }
-  row_text(d.ui(), "Moves",
-           std::to_string(d.state.vertices[static_cast<size_t>(j)]) + " points of the surface");
+  draw_weights_of_bone(d, j);
   draw_place(d, *joint);
   draw_turns(d);
   ButtonRow buttons(3);

@@ -473,15 +473,7 @@ void draw_brush(const app::Session& session, PanelContext& context) {
   row(ui, "Joint", "The joint whose weights you paint");
   int joint = session.selected_joint;
   if (dropdown(ui, "edit.joint", joint_labels(), joint)) context.ask("select.joint", {joint_name(joint)});
-  ask_number(context,
-             {"edit.brush_radius", "Radius", "Radius of the brush on the surface", "tool.brush_radius"},
-             session.brush.radius_m, {0.005f, 0.5f, 0.0005f, "%.3f m"});
-  ask_number(context,
-             {"edit.brush_strength", "Strength", "Strength of a stroke at its centre", "tool.brush_strength"},
-             session.brush.strength, {0.01f, 1, 0.005f, "%.2f"});
-  const std::vector<std::string> modes = {"add", "subtract", "smooth"};
-  ask_choice(context, {"edit.brush_mode", "Brush", "What a stroke does", "tool.brush_mode"},
-             {"Add", "Subtract", "Smooth"}, modes, modes[static_cast<size_t>(session.brush.mode)]);
+  brush_rows(session, context, "edit");
 }
 
 void draw_weights(const app::Session& session, PanelContext& context) {

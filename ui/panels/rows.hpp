@@ -55,6 +55,9 @@ void ask_button(PanelContext& context, const Control& control, bool enabled = tr
 /// A button that takes a tool, lit while it is taken. Without a label: called what the tool is.
 void tool_button(const app::Session& session, PanelContext& context, const Control& control, app::Tool tool);
 
+/// What the brush of the painting tool is like. Marks: PREFIX.brush_radius, .brush_strength, .brush_mode.
+void brush_rows(const app::Session& session, PanelContext& context, const std::string& prefix);
+
 /// A small square of a colour, before what follows on the line.
 void color_chip(Ui& ui, const ImVec4& of);
 

@@ -95,6 +95,12 @@ void add_surface(const Mesh& mesh, const BonesMemory& memory, render::Scene& sce
   scene.meshes.push_back(std::move(view));
 }
 
+/// What is painted is seen.
+BoneSurface surface_in(const Session& session, const PaneContent& pane) {
+  const BoneSurface chosen = session.view.bone_surface;
+  return chosen == BoneSurface::Off && paints_found_bones(session, pane) ? BoneSurface::Over : chosen;
+}
+
 /// Beside the scan, by more than its width.
 Vec3 beside(const Session& session, const Points& rest) {
   if (session.view.bone_surface != BoneSurface::Beside) return Vec3::Zero();
@@ -108,6 +114,22 @@ const RigPose* pose_in(const DiscoveredRig& rig, int frame, const FoundPreview& 
   return pose != nullptr && preview.pose != nullptr ? preview.pose.get() : pose;
 }
 
+/// By bone, or by the weights of the one that is painted.
+void paint_surface(const BonesInput& in, BonesMemory& memory) {
+  const int selected = in.session.bones.selected;
+  const bool painting =
+      paints_found_bones(in.session, in.pane) && selected >= 0 && selected < memory.weights.cols();
+  if (memory.colors->rows() > 0 && memory.selected == selected && memory.painting == painting) return;
+  memory.selected = selected, memory.painting = painting;
+  memory.values = nullptr;
+  if (!painting) {
+    memory.colors = surface_colors(memory.weights, selected);
+    return;
+  }
+  memory.values = std::make_shared<const Eigen::VectorXf>(memory.weights.col(selected));
+  memory.colors = render::colors_along(render::viridis, *memory.values, 0, 1);
+}
+
 void add_painted(const BonesInput& in, BonesMemory& memory, render::Scene& scene) {
   const Session& session = in.session;
   const int frame = in.pictures.frame;
@@ -115,19 +137,21 @@ void add_painted(const BonesInput& in, BonesMemory& memory, render::Scene& scene
   const understudy::Rig& found = rig->found.rig;
   const RigPose* const pose = pose_in(*rig, frame, in.preview);
   if (pose == nullptr) return;
+  const SkinWeights& skin = in.preview.skin != nullptr ? *in.preview.skin : found.skin;
   if (memory.of != rig) {
     memory = {};
-    memory.of = rig, memory.weights = found.skin.dense(found.count());
+    memory.of = rig;
     memory.faces = found.surface.faces;
     memory.spacing = point_spacing(found.surface.vertices);
   }
-  const int selected = session.bones.selected;
-  if (memory.colors->rows() == 0 || memory.selected != selected)
-    memory.colors = surface_colors(memory.weights, selected), memory.selected = selected;
+  if (memory.weights.rows() == 0 || memory.preview.skin != in.preview.skin)
+    memory.weights = skin.dense(found.count()), memory.colors = {};
+  paint_surface(in, memory);
   const Vec3 offset = in.aside + beside(session, found.surface.vertices);
-  if (memory.frame != frame || memory.offset != offset || memory.preview.pose != in.preview.pose) {
+  if (memory.frame != frame || memory.offset != offset || memory.preview.pose != in.preview.pose ||
+      memory.preview.skin != in.preview.skin) {
     memory.frame = frame, memory.offset = offset, memory.preview = in.preview;
-    const Points posed = skinned(found.surface.vertices, found.skin, bone_motions(found, *pose));
+    const Points posed = skinned(found.surface.vertices, skin, bone_motions(found, *pose));
     memory.vertices = Points(posed.rowwise() + offset.transpose());
     if (!found.surface.is_cloud()) memory.normals = vertex_normals(posed, found.surface.faces);
   }
@@ -176,10 +200,10 @@ bool hides_person(const Session& session) {
   return session.source.no_person && session.document.bones.wanted;
 }
 
-bool bones_hide_scan(const Session& session, int frame) {
+bool bones_hide_scan(const Session& session, const PaneContent& pane, int frame) {
   const app::BonesState& bones = session.bones;
   if (bones.so_far) return true;
-  return bones.rig && session.view.bone_surface == BoneSurface::Over &&
+  return bones.rig && surface_in(session, pane) == BoneSurface::Over &&
          app::frame_of_rig(*bones.rig, frame) >= 0;
 }
 
@@ -208,7 +232,7 @@ void add_bones(const BonesInput& in, BonesMemory& memory, render::Scene& scene) 
   const Session& session = in.session;
   if (session.bones.so_far) return add_so_far(in, memory, scene);
   if (!session.bones.rig) return;
-  if (session.view.bone_surface != BoneSurface::Off) add_painted(in, memory, scene);
+  if (surface_in(session, in.pane) != BoneSurface::Off) add_painted(in, memory, scene);
   auto bones = posed_bones(session, in.pane, in.pictures.frame, in.preview);
   if (!bones) return;
   bones->places.rowwise() += in.aside.transpose();

@@ -13,22 +13,25 @@
 
 namespace understudy::ui {
 
+/// What an edit under the mouse makes of the found rig in the frame shown.
+struct FoundPreview {
+  std::shared_ptr<const RigPose> pose;      ///< null: as it is
+  std::shared_ptr<const SkinWeights> skin;  ///< null: as it is
+};
+
 /// What is drawn of found bones, kept while its inputs stay the same.
 struct BonesMemory {
   std::shared_ptr<const void> of;  ///< the rig, or what is found so far
   FoundPreview preview;
   int selected = -1, frame = -1;
+  bool painting = false;
   std::shared_ptr<const app::ScanPicture> beside;  ///< the scan whose place is taken
   Vec3 offset = Vec3::Zero();
   RowMatrix weights;  ///< [V, J] of the rig
   render::SharedPoints colors, vertices, normals;
+  std::shared_ptr<const Eigen::VectorXf> values;  ///< [V] of the chosen bone while it is painted; else null
   render::SharedFaces faces;
   float spacing = 0;
-};
-
-/// What an edit under the mouse makes of the found rig in the frame shown.
-struct FoundPreview {
-  std::shared_ptr<const RigPose> pose;  ///< null: as it is
 };
 
 /// The found skeleton in a frame of the source: its joints, then where bones that carry no other end.
@@ -44,7 +47,7 @@ std::optional<PosedBones> posed_bones(const app::Session& session, const PaneCon
 /// The 22 joints are hidden where the source is no person and has bones of its own.
 bool hides_person(const app::Session& session);
 /// Whether what was found, or is found so far, is drawn in the scan's place.
-bool bones_hide_scan(const app::Session& session, int frame);
+bool bones_hide_scan(const app::Session& session, const PaneContent& pane, int frame);
 
 /// What bones are drawn from; all of it is shifted by `aside`.
 struct BonesInput {

@@ -8,7 +8,6 @@
 #include "retarget/base/index.hpp"
 #include "retarget/editing/limb_move.hpp"
 #include "retarget/math/rotation.hpp"
-#include "retarget/rig/rig_edits.hpp"
 #include "retarget/skeleton/skinning.hpp"
 #include "ui/panels/panel.hpp"
 #include "ui/viewport/pane.hpp"
@@ -188,8 +187,7 @@ void Hand::grab(const HandPlace& place, const Subject& subject, const Pointer& p
   const Session& session = place.session;
   joint_ = handle_ != GizmoHandle::None ? subject.selected : hovered_;
   if (joint_ != subject.selected)
-    queue.push_back(on_found_ ? std::pair("bones.select", app::Arguments{std::to_string(joint_)})
-                              : std::pair("select.joint", app::Arguments{joint_name(joint_)}));
+    queue.push_back(choice_of(joint_));
   if (session.playback.playing) queue.push_back({"playback.pause", {}});
   const bool limb = subject.grip == Grip::Bone && handle_ == GizmoHandle::None;
   const bool by_rings = turns(subject.grip) && !limb && handle_ == GizmoHandle::None;
@@ -270,8 +268,9 @@ void Hand::finish(const HandPlace& place, app::CommandQueue& queue) {
 /// Whether the drag, or the edit just pushed, belongs to this pane and is not in its pictures yet.
 bool Hand::shown_in(const HandPlace& place) const {
   const Grip grip = current();
-  if (grip == Grip::FoundBone)
-    return place.pane == pane_ && place.pictures.frame == frame_ && place.session.bones.rig == rig_before_ &&
+  if (of_found(grip))
+    return place.pane == pane_ && place.session.bones.rig == rig_before_ &&
+           (grip == Grip::FoundPaint || place.pictures.frame == frame_) &&
            (busy() || place.session.time < settle_until_);
   const bool of_rest = grip == Grip::RestJoint || grip == Grip::RestBone;
   if (grip != Grip::Joint && !of_result(grip) && !of_rest) return false;
@@ -335,10 +334,12 @@ Joints Hand::moved_joints(const HandPlace& place) const {
   return source_drag_ ? source_drag_->joints(drag).value_or(joints) : joints;
 }
 
-/// The found rig as the drag turns it.
+/// The found rig as the drag turns it, or the stroke has painted it so far.
 FoundPreview Hand::found_preview(const HandPlace& place) const {
   FoundPreview preview;
-  if (current() != Grip::FoundBone || !shown_in(place)) return preview;
+  if (!of_found(current()) || !shown_in(place)) return preview;
+  if (current() == Grip::FoundPaint) preview.skin = painted_skin_;
+  if (current() != Grip::FoundBone) return preview;
   const DiscoveredRig& rig = *rig_before_;
   const RigPose& pose =
       rig.found.motion.poses[static_cast<size_t>(app::frame_of_rig(rig, place.pictures.frame))];
@@ -352,7 +353,7 @@ EditPreview Hand::preview(const HandPlace& place) const {
   const Session& session = place.session;
   auto subject = subject_of(place);
   preview.found = found_preview(place);
-  if (shown_in(place) && current() != Grip::FoundBone) {
+  if (shown_in(place) && !of_found(current())) {
     const Joints moved = moved_joints(place);
     (current() == Grip::Joint ? preview.source_joints : preview.take_joints) = moved;
     if (subject) subject->joints = moved;
@@ -421,45 +422,107 @@ bool Hand::work_on_box(const HandPlace& place, const Pointer& pointer, app::Comm
   return true;
 }
 
+/// The command that chooses it.
+std::pair<std::string, app::Arguments> Hand::choice_of(int joint) const {
+  if (on_found_) return {"bones.select", {std::to_string(joint)}};
+  return {"select.joint", {joint_name(joint)}};
+}
+
 /// Another joint than the one that is painted, under the pointer; -1: none. A stroke goes on over them.
 int Hand::joint_to_paint(const HandPlace& place, const Pointer& pointer) const {
+  if (busy()) return -1;
+  const float reach = kReach * place.scale;
+  if (on_found_) {
+    const auto bones = posed_bones(place.session, place.pane, place.pictures.frame);
+    const int bone =
+        bones ? point_at(place.view, bones->places.topRows(bones->joints), pointer.at, reach) : -1;
+    return bone == place.session.bones.selected ? -1 : bone;
+  }
   const app::Layers& layers = place.pane.source ? place.session.view.source : place.session.view.take;
   const Joints* joints = app::pane_joints(place.session, place.pane.number, place.pictures.frame);
-  if (busy() || !layers.skeleton || joints == nullptr) return -1;
-  const int joint = point_at(place.view, *joints, pointer.at, kReach * place.scale);
+  if (!layers.skeleton || joints == nullptr) return -1;
+  const int joint = point_at(place.view, *joints, pointer.at, reach);
   return joint == place.session.selected_joint ? -1 : joint;
+}
+
+std::optional<Hand::Touch> Hand::touch(const HandPlace& place, const ImVec2& at) const {
+  const Session& session = place.session;
+  if (on_found_ && place.bones == nullptr) return std::nullopt;
+  const Vec3 moved = on_found_ ? aside(session, place.pane, 0) : Vec3(Vec3::Zero());
+  const render::Ray ray = place.view.shifted(-moved).ray(at);  // found bones are drawn where they stand
+  const auto hit = on_found_ ? found_under(session, *place.bones, ray)
+                             : take_under(session, place.pane, place.pictures, ray);
+  if (!hit) return std::nullopt;
+  const Mesh& mesh = on_found_ ? session.bones.rig->found.rig.surface
+                               : first_take(session, place.pane)->target->mesh;
+  const Points& normals = on_found_ ? *place.bones->normals : place.pictures.takes[0]->normals;
+  Touch touch{{hit->position - moved, Vec3::UnitY()}, Vec3::Zero()};
+  if (normals.rows() > hit->vertex) touch.brush.normal = normals.row(hit->vertex);
+  if (mesh.is_cloud()) touch.rest = mesh.vertices.row(hit->vertex);
+  for (int c = 0; c < 3 && !mesh.is_cloud(); ++c)
+    touch.rest += hit->barycentric[c] * mesh.vertices.row(mesh.faces(hit->face, c)).transpose();
+  return touch;
 }
 
 bool Hand::paint(const HandPlace& place, const Pointer& pointer, app::CommandQueue& queue) {
   brush_.reset();
-  if (busy() && (pointer.released || !pointer.held)) grip_ = Grip::None;
+  if (busy() && (pointer.released || !pointer.held)) end_stroke(place.session, queue);
   hovered_ = joint_to_paint(place, pointer);
   if (hovered_ >= 0) {
     tip_ = "Click: paint its weights";
-    if (pointer.pressed) queue.push_back({"select.joint", {joint_name(hovered_)}});
+    if (pointer.pressed) queue.push_back(choice_of(hovered_));
     return true;
   }
-  const auto hit = take_under(place.session, place.pane, place.pictures, place.view.ray(pointer.at));
-  if (!hit) return busy();
-  const Mesh& mesh = first_take(place.session, place.pane)->target->mesh;
-  const Points& normals = place.pictures.takes[0]->normals;
-  Vec3 rest = Vec3::Zero();
-  for (int c = 0; c < 3; ++c)
-    rest += hit->barycentric[c] * mesh.vertices.row(mesh.faces(hit->face, c)).transpose();
-  const Vec3 normal = normals.rows() > hit->vertex ? Vec3(normals.row(hit->vertex)) : Vec3::UnitY();
-  brush_ = BrushPlace{hit->position, normal};
-  if (place.session.selected_joint < 0) tip_ = "Choose the joint to paint first";
-  if (place.session.selected_joint < 0) return true;
-  const bool apart = (rest - last_dab_).norm() > kDabStep * place.session.brush.radius_m;
-  if (pointer.pressed || (busy() && apart)) {
-    if (pointer.pressed && place.session.playback.playing) queue.push_back({"playback.pause", {}});
-    grip_ = Grip::Paint;
-    last_dab_ = rest;
+  const auto touched = touch(place, pointer.at);
+  if (!touched) return busy();
+  brush_ = touched->brush;
+  if ((on_found_ ? place.session.bones.selected : place.session.selected_joint) < 0) {
+    tip_ = on_found_ ? "Choose the bone to paint first" : "Choose the joint to paint first";
+    return true;
+  }
+  const bool apart = (touched->rest - last_dab_).norm() > kDabStep * place.session.brush.radius_m;
+  if (pointer.pressed) begin_stroke(place, queue);
+  if (pointer.pressed || (busy() && apart)) dab(place, touched->rest, queue);
+  return true;
+}
+
+void Hand::begin_stroke(const HandPlace& place, app::CommandQueue& queue) {
+  const Session& session = place.session;
+  if (session.playback.playing) queue.push_back({"playback.pause", {}});
+  grip_ = on_found_ ? Grip::FoundPaint : Grip::Paint, settling_ = Grip::None;
+  if (!on_found_) return;
+  const Brush& brush = session.brush;
+  stroke_ = {session.bones.selected, {}, brush.radius_m, brush.strength, brush.mode};
+  rig_before_ = session.bones.rig;
+  painted_ = {rig_before_->found.rig, {}};
+}
+
+/// A target's dab is an edit at once; a found bone's are one when the stroke ends, and seen until then.
+void Hand::dab(const HandPlace& place, const Vec3& rest, app::CommandQueue& queue) {
+  last_dab_ = rest;
+  if (grip_ == Grip::Paint) {
     app::Arguments words{std::to_string(place.pane.takes[0])};
     words << rest;
     queue.push_back({"edit.paint", words});
+    return;
   }
-  return true;
+  PaintBone one = stroke_;
+  one.at = {rest};
+  understudy::apply(painted_, one);
+  stroke_.at.push_back(rest);
+  painted_skin_ = std::make_shared<const SkinWeights>(painted_.rig.skin);
+}
+
+void Hand::end_stroke(const Session& session, app::CommandQueue& queue) {
+  const Grip grip = std::exchange(grip_, Grip::None);
+  if (grip != Grip::FoundPaint || rig_before_ != session.bones.rig) return;
+  app::Arguments words{std::to_string(stroke_.joint), argument(static_cast<double>(stroke_.radius_m)),
+                       argument(static_cast<double>(stroke_.strength)),
+                       kBrushModeNames[static_cast<size_t>(stroke_.mode)]};
+  for (const Vec3& at : stroke_.at) words << at;
+  queue.push_back({"bones.paint", words});
+  settling_ = grip;
+  settle_until_ = session.time + kSettleSeconds;
 }
 
 }  // namespace understudy::ui

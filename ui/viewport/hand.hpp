@@ -7,6 +7,7 @@
 
 #include "app/session/commands.hpp"
 #include "app/session/source_drag.hpp"
+#include "retarget/rig/rig_edits.hpp"
 #include "ui/viewport/scene_builder.hpp"
 
 namespace understudy::ui {
@@ -17,7 +18,8 @@ struct HandPlace {
   const PaneContent& pane;
   const PaneView& view;
   const PanePictures& pictures;
-  float scale = 1;  ///< of the interface: pixels a point
+  float scale = 1;                     ///< of the interface: pixels a point
+  const BonesMemory* bones = nullptr;  ///< what of found bones is drawn in the pane; null: nothing
 };
 
 /// One for all panes: there is one mouse.
@@ -52,7 +54,7 @@ class Hand {
   const std::string& tip() const { return tip_; }
 
  private:
-  enum class Grip { None, Joint, Bone, Limb, RestJoint, RestBone, FoundBone, Face, Paint };
+  enum class Grip { None, Joint, Bone, Limb, RestJoint, RestBone, FoundBone, Face, Paint, FoundPaint };
   /// A skeleton that a tool works on: the extracted one, a take's, a target's in T-pose, or a found one.
   struct Subject {
     Grip grip = Grip::None;
@@ -76,11 +78,23 @@ class Hand {
   bool work_on_box(const HandPlace& place, const Pointer& pointer, app::CommandQueue& queue);
   bool paint(const HandPlace& place, const Pointer& pointer, app::CommandQueue& queue);
   int joint_to_paint(const HandPlace& place, const Pointer& pointer) const;
+  /// Where the pointer meets the surface that is painted.
+  struct Touch {
+    BrushPlace brush;
+    Vec3 rest;
+  };
+  std::optional<Touch> touch(const HandPlace& place, const ImVec2& at) const;
+  void begin_stroke(const HandPlace& place, app::CommandQueue& queue);
+  void dab(const HandPlace& place, const Vec3& rest, app::CommandQueue& queue);
+  void end_stroke(const app::Session& session, app::CommandQueue& queue);
+  std::pair<std::string, app::Arguments> choice_of(int joint) const;
   /// The drag, or else the edit just pushed.
   Grip current() const { return busy() ? grip_ : settling_; }
   Joints moved_joints(const HandPlace& place) const;
   /// A turned bone, or a limb: what is shown of it is made the same way.
   static bool of_result(Grip grip) { return grip == Grip::Bone || grip == Grip::Limb; }
+  /// What was found in the source is turned or painted.
+  static bool of_found(Grip grip) { return grip == Grip::FoundBone || grip == Grip::FoundPaint; }
   /// Turned by the rings of a gizmo.
   static bool turns(Grip grip) {
     return grip == Grip::Bone || grip == Grip::RestBone || grip == Grip::FoundBone;
@@ -107,7 +121,10 @@ class Hand {
   render::Ray start_{}, last_{};
   Mat3 handles_ = Mat3::Identity();  ///< of the subject
   Vec3 offset_ = Vec3::Zero();       ///< metres, world; of what turns: axis times angle, in the joint's frame
-  std::shared_ptr<const DiscoveredRig> rig_before_;  ///< of FoundBone
+  std::shared_ptr<const DiscoveredRig> rig_before_;  ///< of FoundBone and FoundPaint
+  PaintBone stroke_;                                 ///< of FoundPaint, as far as it has come
+  RiggedMotion painted_;                             ///< the rig with it
+  std::shared_ptr<const SkinWeights> painted_skin_;
   std::optional<app::SourceDrag> source_drag_;  ///< of Joint
   Points corrections_{0, 3};  ///< of a turned bone or a limb: pose-corrective offsets when it was gripped
   /// A bone of the rest pose as it was released, and what the pane showed then.

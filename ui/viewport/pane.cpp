@@ -58,15 +58,19 @@ std::vector<PanePictures::Ghost> ghosts_of(const Session& session, app::FrameCac
   return ghosts;
 }
 
+std::optional<render::SurfaceHit> point_under(const Points& points, const render::Ray& ray) {
+  const auto vertex = render::point_near(points, ray, kNearScan);
+  if (!vertex) return std::nullopt;
+  render::SurfaceHit hit;
+  hit.vertex = *vertex, hit.position = points.row(*vertex);
+  return hit;
+}
+
 std::optional<render::SurfaceHit> scan_under(const Session& session, const Pane& pane,
                                              const render::Ray& ray) {
   const auto& scan = pane.memory.scan.shown ? pane.memory.scan.shown : pane.keeper.pictures().scan;
   if (scan == nullptr || !session.view.source.surface) return std::nullopt;
-  const auto vertex = render::point_near(scan->mesh.vertices, ray, kNearScan);
-  if (!vertex) return std::nullopt;
-  render::SurfaceHit hit;
-  hit.vertex = *vertex, hit.position = scan->mesh.vertices.row(*vertex);
-  return hit;
+  return point_under(scan->mesh.vertices, ray);
 }
 
 std::string weight_words(const Session& session, const Pane& pane, int vertex) {
@@ -235,14 +239,25 @@ std::optional<render::SurfaceHit> take_under(const Session& session, const PaneC
   return render::surface_under(ray, posed->vertices, mesh.faces);
 }
 
+std::optional<render::SurfaceHit> found_under(const Session& session, const BonesMemory& drawn,
+                                              const render::Ray& ray) {
+  if (!session.bones.rig || drawn.of != session.bones.rig || drawn.vertices->rows() == 0) return std::nullopt;
+  const Mesh& rest = session.bones.rig->found.rig.surface;
+  return rest.is_cloud() ? point_under(*drawn.vertices, ray)
+                         : render::surface_under(ray, *drawn.vertices, rest.faces);
+}
+
 std::string value_under(const Session& session, const Pane& pane, const ImVec2& at) {
   const Legend& legend = pane.made.legend;
   const auto& values = pane.made.values;
   if (legend.title.empty() || (values == nullptr && legend.categories.empty())) return "";
   const int person = pane.made.values_take + 1;
   const render::Ray ray = pane.view.shifted(aside(session, pane.content, person)).ray(at);
-  const auto hit = pane.made.values_take < 0 ? scan_under(session, pane, ray)
-                                             : take_under(session, pane.content, pane.keeper.pictures(), ray);
+  const auto hit = paints_found_bones(session, pane.content)
+                       ? found_under(session, pane.memory.bones, pane.view.ray(at))
+                   : pane.made.values_take < 0
+                       ? scan_under(session, pane, ray)
+                       : take_under(session, pane.content, pane.keeper.pictures(), ray);
   if (!hit) return "";
   if (values == nullptr) return weight_words(session, pane, hit->vertex);
   return hit->vertex < values->size() ? figure(static_cast<double>((*values)[hit->vertex]), legend.unit) : "";

@@ -215,8 +215,13 @@ Vec3 aside(const Session& session, const PaneContent& pane, int person) {
 }
 
 bool tool_on_found_bones(const Session& session, const PaneContent& pane) {
-  return session.tool == app::Tool::Bones && pane.source && session.view.source.bones && session.bones.rig &&
-         (pane.takes.empty() || session.bones.selected >= 0);
+  const bool can = session.tool == app::Tool::Paint ||
+                   (session.tool == app::Tool::Bones && session.view.source.bones);
+  return can && pane.source && session.bones.rig && (pane.takes.empty() || session.bones.selected >= 0);
+}
+
+bool paints_found_bones(const Session& session, const PaneContent& pane) {
+  return session.tool == app::Tool::Paint && tool_on_found_bones(session, pane);
 }
 
 int person_of_tool(const Session& session, const PaneContent& pane) {

@@ -63,9 +63,11 @@ Vec3 follow_offset(const app::Session& session, const PaneContent& pane);
 render::Camera pane_camera(const app::Session& session, const PaneContent& pane);
 /// How far a person stands from its place in a pane whose people stand side by side, metres; zero in others.
 Vec3 aside(const app::Session& session, const PaneContent& pane, int person);
-/// Whether the tool in use is about the bones that were found in the source: where they are shown in a pane,
-/// and one of them is chosen where the pane shows takes, too.
+/// Whether the tool in use is about the bones that were found in the source: where they are shown in a pane
+/// (or painted), and one of them is chosen where the pane shows takes, too.
 bool tool_on_found_bones(const app::Session& session, const PaneContent& pane);
+/// Whether their weights are painted there.
+bool paints_found_bones(const app::Session& session, const PaneContent& pane);
 /// Whom the tool in use and the joints' names are about, as app::pane_joints() numbers people.
 int person_of_tool(const app::Session& session, const PaneContent& pane);
 /// The arguments of view.camera_state: the number of the camera, then target, yaw, pitch (radians) and

@@ -131,6 +131,7 @@ class Builder {
   const SurfaceColours& scan_colors();
   Points people_colors(const ShownScan& scan, const SharedPoints& plain) const;
   void explain(const SurfaceColours& made, int take);
+  void explain_painted_bone();
 
   const SceneInput& in_;
   const Session& session_;
@@ -198,7 +199,7 @@ void Builder::add_surface(render::MeshView view, bool as_points, float radius) {
 
 void Builder::add_scan() {
   const app::Layers& layers = session_.view.source;
-  if (layers.surface && in_.pictures.scan != nullptr && !bones_hide_scan(session_, in_.pictures.frame)) {
+  if (layers.surface && in_.pictures.scan != nullptr && !bones_hide_scan(session_, in_.pane, in_.pictures.frame)) {
     const auto& scan = shown_scan().shown;
     const SurfaceColours& made = scan_colors();
     render::MeshView view;
@@ -216,6 +217,7 @@ void Builder::add_scan() {
   if (in_.preview.source_joints) joints = &*in_.preview.source_joints;
   if (joints != nullptr && !hides_person(session_)) add_skeleton(*joints, layers, 0);
   add_bones({session_, in_.pane, in_.pictures, in_.preview.found, aside_of(0)}, memory_.bones, out_.scene);
+  explain_painted_bone();
 }
 
 void Builder::add_take(size_t i) {
@@ -426,6 +428,16 @@ void Builder::explain(const SurfaceColours& made, int take) {
   out_.legend = made.values.legend;
   out_.values = made.values.values;
   out_.values_take = take;
+}
+
+void Builder::explain_painted_bone() {
+  if (memory_.bones.values == nullptr || !paints_found_bones(session_, in_.pane)) return;
+  const auto& joints = session_.bones.rig->found.rig.joints;
+  out_.legend = {};
+  out_.legend.title = "Weight, " + joints[static_cast<size_t>(session_.bones.selected)].name;
+  out_.legend.scale = Legend::Scale::Viridis, out_.legend.high = 1;
+  out_.values = memory_.bones.values;
+  out_.values_take = -1;
 }
 
 const SurfaceColours& Builder::take_colors(int k, const std::shared_ptr<const app::PosedPicture>& posed) {

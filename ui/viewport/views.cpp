@@ -227,7 +227,8 @@ void Views::set_up(const Frame& f, Pane& pane, const PaneContent& content, const
 void Views::interact(const Frame& f, Pane& pane) {
   const Pointer now = pointer_of_item();
   const PaneView seen = tool_view(f.session, pane);
-  const HandPlace place{f.session, pane.content, seen, pane.keeper.pictures(), f.context.ui.scale()};
+  const HandPlace place{f.session, pane.content, seen, pane.keeper.pictures(), f.context.ui.scale(),
+                        &pane.memory.bones};
   const bool taken = hand_.work(place, now, f.context.queue);
   if (now.over || now.held) {
     pointer_ = now, under_ = &pane;
@@ -341,7 +342,8 @@ bool Views::waits(const Pane& pane) const {
 void Views::make_picture(const Frame& f, Pane& pane) {
   if (waits(pane) && pane.canvas.seen_from(pane.view.camera, pane.view.size())) return;
   const PaneView seen = tool_view(f.session, pane);
-  const HandPlace place{f.session, pane.content, seen, pane.keeper.pictures(), f.context.ui.scale()};
+  const HandPlace place{f.session, pane.content, seen, pane.keeper.pictures(), f.context.ui.scale(),
+                        &pane.memory.bones};
   PanePictures pictures = pane.keeper.pictures();
   pane.preview = hand_.preview(place);
   if (const auto turned = hand_.turned_picture(place); turned != nullptr && !pictures.takes.empty())

@@ -294,7 +294,7 @@ TEST(PaintBone, GrowsAndShrinksTowardsItsRim) {
   const RiggedMotion before = moving_tube();
   RiggedMotion after = before;
   const Vec3 at = before.rig.surface.vertices.row(15 * kRing).transpose();  // x = 1.5
-  apply(after, PaintBone{0, at, 0.3f, 0.5f, true});
+  apply(after, PaintBone{0, {at}, 0.3f, 0.5f});
   expect_sound(after);
   const RowMatrix weights = after.rig.skin.dense(3), was = before.rig.skin.dense(3);
   EXPECT_NEAR(weights(15 * kRing, 0), 0.5f, 1e-5f);
@@ -304,9 +304,9 @@ TEST(PaintBone, GrowsAndShrinksTowardsItsRim) {
   EXPECT_EQ(weights.topRows(12 * kRing), was.topRows(12 * kRing));
   EXPECT_EQ(weights.bottomRows(12 * kRing), was.bottomRows(12 * kRing));
   // All of it taken away, alone at its place: the parent has it.
-  apply(after, PaintBone{0, at, 0.3f, 1, false});
+  apply(after, PaintBone{0, {at}, 0.3f, 1, BrushMode::Subtract});
   EXPECT_NEAR(after.rig.skin.dense(3)(15 * kRing, 1), 1, 1e-5f);
-  apply(after, PaintBone{1, at, 0.3f, 1, false});
+  apply(after, PaintBone{1, {at}, 0.3f, 1, BrushMode::Subtract});
   EXPECT_NEAR(after.rig.skin.dense(3)(15 * kRing, 0), 1, 1e-5f);
   expect_sound(after);
 }
@@ -323,23 +323,57 @@ TEST(PaintBone, LeavesWhatOnlyLiesNear) {
   two.rig.surface.faces.bottomRows(faces) = one.surface.faces.array() + static_cast<int>(count);
   std::vector<int> bones(static_cast<size_t>(2 * count), 1);
   two.rig.skin = SkinWeights::rigid(bones);
-  apply(two, PaintBone{2, {1.5f, 0.1f, 0}, 0.15f, 1, true});
+  apply(two, PaintBone{2, {Vec3(1.5f, 0.1f, 0)}, 0.15f, 1});
   const RowMatrix weights = two.rig.skin.dense(3);
   EXPECT_GT(weights.col(2).head(count).maxCoeff(), 0.9f);
   EXPECT_EQ(weights.col(2).tail(count).maxCoeff(), 0);
   two.rig.surface.faces.resize(0, 3);  // of a cloud nobody knows
-  apply(two, PaintBone{2, {1.5f, 0.1f, 0}, 0.15f, 1, true});
+  apply(two, PaintBone{2, {Vec3(1.5f, 0.1f, 0)}, 0.15f, 1});
   EXPECT_GT(two.rig.skin.dense(3).col(2).tail(count).maxCoeff(), 0.1f);
+}
+
+TEST(PaintBone, AStrokeIsItsDabsOneAfterTheOther) {
+  RiggedMotion at_once = moving_tube(), one_by_one = at_once;
+  PaintBone stroke{0, {}, 0.3f, 0.5f};
+  for (const int ring : {14, 15, 17}) {
+    stroke.at.emplace_back(at_once.rig.surface.vertices.row(ring * kRing).transpose());
+    apply(one_by_one, PaintBone{0, {stroke.at.back()}, 0.3f, 0.5f});
+  }
+  apply(at_once, stroke);
+  EXPECT_EQ(at_once.rig.skin.weights, one_by_one.rig.skin.weights);
+  EXPECT_EQ(at_once.rig.skin.bones, one_by_one.rig.skin.bones);
+}
+
+TEST(PaintBone, SmoothsWhereWeightsChangeAtOnce) {
+  RiggedMotion tube = moving_tube();
+  tube.rig.skin = SkinWeights::rigid(std::vector<int>(static_cast<size_t>(tube.rig.skin.size()), 1));
+  const Eigen::Index edge = 15 * kRing;
+  for (Eigen::Index v = edge; v < tube.rig.skin.size(); ++v) tube.rig.skin.bones(v, 0) = 2;
+  const RowMatrix was = tube.rig.skin.dense(3);
+  const Vec3 at = tube.rig.surface.vertices.row(edge).transpose();
+  apply(tube, PaintBone{1, {at}, 0.3f, 1, BrushMode::Smooth});
+  expect_sound(tube);
+  const RowMatrix weights = tube.rig.skin.dense(3);
+  EXPECT_GT(weights(edge, 1), 0.1f) << "some of what is before the edge";
+  EXPECT_LT(weights(edge, 1), 0.9f);
+  EXPECT_NEAR(weights.row(edge).sum(), 1, 1e-5f);
+  EXPECT_EQ(weights.topRows(11 * kRing), was.topRows(11 * kRing)) << "beyond the radius";
+  RiggedMotion even = moving_tube();
+  even.rig.skin = SkinWeights::rigid(std::vector<int>(static_cast<size_t>(even.rig.skin.size()), 1));
+  const RowMatrix all = even.rig.skin.dense(3);
+  apply(even, PaintBone{1, {at}, 0.3f, 1, BrushMode::Smooth});
+  EXPECT_LT((even.rig.skin.dense(3) - all).cwiseAbs().maxCoeff(), 1e-6f) << "alike everywhere";
 }
 
 TEST(PaintBone, OfFiveBonesTheLeastGoes) {
   RiggedMotion snake = creature(CreatureKind::Snake);
   ASSERT_GT(snake.rig.count(), 5);
+  const Vec3 at = snake.rig.surface.vertices.row(0).transpose();
   snake.rig.skin.bones.row(0) << 0, 1, 2, 3;
   snake.rig.skin.weights.row(0) << 0.4f, 0.3f, 0.2f, 0.1f;
-  apply(snake, PaintBone{5, snake.rig.surface.vertices.row(0).transpose(), 1e-4f, 0.05f, true});
+  apply(snake, PaintBone{5, {at}, 1e-4f, 0.05f});
   EXPECT_NEAR(snake.rig.skin.dense(snake.rig.count())(0, 3), 0.1f, 1e-6f);  // which is the new one
-  apply(snake, PaintBone{5, snake.rig.surface.vertices.row(0).transpose(), 1e-4f, 0.15f, true});
+  apply(snake, PaintBone{5, {at}, 1e-4f, 0.15f});
   const RowMatrix row = snake.rig.skin.dense(snake.rig.count()).row(0);
   EXPECT_NEAR(row(0, 5), 0.15f, 1e-5f);
   EXPECT_EQ(row(0, 3), 0);
@@ -441,10 +475,11 @@ TEST(RigEdit, RefusesWhatIsNotThereAndChangesNothing) {
                                       SetJointKind{1, JointKind::Hinge, Vec3(nan, 0, 0)},
                                       RootAt{3},
                                       RenameBone{-1, "a"},
-                                      PaintBone{3, {0, 0, 0}},
-                                      PaintBone{1, {nan, 0, 0}},
-                                      PaintBone{1, {0, 0, 0}, 0},
-                                      PaintBone{1, {0, 0, 0}, 0.1f, 1.5f},
+                                      PaintBone{3, {Vec3::Zero()}},
+                                      PaintBone{1, {Vec3(nan, 0, 0)}},
+                                      PaintBone{1, {}},
+                                      PaintBone{1, {Vec3::Zero()}, 0},
+                                      PaintBone{1, {Vec3::Zero()}, 0.1f, 1.5f},
                                       TurnBone{1, 12, {0, 0, 1}},
                                       TurnBone{3, 1, {0, 0, 1}},
                                       TurnBone{1, 1, {0, 0, nan}},
