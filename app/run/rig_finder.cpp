@@ -115,6 +115,8 @@ Json to_json(const DiscoveredRig& rig) {
                  {"kind", kJointKindNames[static_cast<size_t>(joint.kind)]},
                  {"turned_deg", rig.bones[j].turned_deg},
                  {"off_mm", 1000 * rig.bones[j].off_m}};
+    const float seen = rig.bones[j].seen_share;
+    bone["seen_share"] = seen < 0 ? Json() : Json(seen);
     if (joint.kind == JointKind::Hinge || joint.kind == JointKind::Slider)
       bone["axis"] = {joint.axis.x(), joint.axis.y(), joint.axis.z()};
     if (joint.kind == JointKind::Slider) bone["slid_mm"] = 1000 * rig.bones[j].slid_m;

@@ -31,16 +31,6 @@ double key_rate(const Character& character) {
   return static_cast<double>(longest->size() - 1) / static_cast<double>(longest->back() - longest->front());
 }
 
-/// What tables tell of a rig that was followed.
-void describe(DiscoveredRig& rig) {
-  double off = 0;
-  int known = 0;
-  for (const float one : rig.off_m)
-    if (one >= 0) off += static_cast<double>(one), ++known;
-  measure_motion(rig.found, rig.bones);
-  for (FoundBone& bone : rig.bones) bone.off_m = static_cast<float>(off / std::max(1, known));
-}
-
 int bone_named(const understudy::Rig& rig, const std::string& name, const std::string& path) {
   for (int j = 0; j < rig.count(); ++j)
     if (rig.joints[static_cast<size_t>(j)].name == name) return j;
@@ -70,6 +60,7 @@ FollowedScans follow_scans(const RiggedMotion& known, Source& source,
   rig.found.rig = known.rig;
   rig.found.motion.fps = source.fps();
   RigFollower follower(known.rig);
+  BoneDistances of_bones(known.rig.count());
   bool begun = false;
   while (const auto frame = source.next()) {
     RigPose pose = rig.found.motion.poses.empty() ? rest_pose(known.rig) : rig.found.motion.poses.back();
@@ -80,7 +71,8 @@ FollowedScans follow_scans(const RiggedMotion& known, Source& source,
       RigFollower::Followed now = follower.follow(frame->mesh);
       if (begun) followed.ms.push_back(ms_since(began));
       begun = true;
-      pose = std::move(now.pose), off = now.off_m;
+      of_bones.add(follower.surface().skin, now.distances);
+      pose = std::move(now.pose), off = now.off_m();
     }
     rig.found.motion.poses.push_back(std::move(pose));
     rig.off_m.push_back(off);
@@ -89,7 +81,8 @@ FollowedScans follow_scans(const RiggedMotion& known, Source& source,
   }
   US_CHECK(begun, "no scan has ", kFewest, " points: there is nothing to lay the rig on");
   rig.doubted = doubted_frames(rig.off_m);
-  describe(rig);
+  measure_motion(rig.found, rig.bones);
+  of_bones.tell(rig.bones);
   return followed;
 }
 

@@ -67,9 +67,8 @@ void add_brush(Commands& commands) {
                [](Call& c) { c.session.brush.radius_m = c.clamped(0, "radius", 0.002f, 1.f); });
   commands.add({"tool.brush_strength", "Brush strength", "0 to 1"},
                [](Call& c) { c.session.brush.strength = c.clamped(0, "strength", 0.f, 1.f); });
-  commands.add({"tool.brush_mode", "Brush mode", "add|subtract|smooth"}, [](Call& c) {
-    c.session.brush.mode = c.choice<BrushMode>(0, "mode", kBrushModeNames);
-  });
+  commands.add({"tool.brush_mode", "Brush mode", "add|subtract|smooth"},
+               [](Call& c) { c.session.brush.mode = c.choice<BrushMode>(0, "mode", kBrushModeNames); });
 }
 
 void add_work(Commands& commands) {

@@ -158,7 +158,7 @@ struct Question {
 enum class Tool { Look, Joints, Bones, TargetJoints, Paint, Crop, RestPose };
 constexpr Names<7> kToolNames{"look", "joints", "bones", "target-joints", "paint", "crop", "rest-pose"};
 constexpr Names<7> kToolLabels{
-    "Look around",        "Drag extracted joints", "Pose bones", "Place the target's joints",
+    "Look around",        "Drag extracted joints", "Pose bones",    "Place the target's joints",
     "Paint skin weights", "Crop the scan",         "Edit rest pose"};  ///< on the screen
 /// Whether a tool works on the target before it performs, which is then seen instead of a frame.
 constexpr bool is_of_rest(Tool tool) {

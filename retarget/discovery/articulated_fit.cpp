@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 
+#include "retarget/math/percentile.hpp"
 #include "retarget/math/rotation.hpp"
 
 namespace understudy {
@@ -198,12 +199,19 @@ void fit_bones(const Rig& rig, const FittedSurface& surface, const ThinnedFrame&
   }
 }
 
-Eigen::VectorXf distances_to(const ThinnedFrame& scan, const FittedSurface& surface,
-                             const BoneMotions& bones) {
+ScanDistances distances_to(const ThinnedFrame& scan, const FittedSurface& surface, const BoneMotions& bones) {
+  constexpr Eigen::Index kAsked = 500;  // points of the scan, for its spacing
   const Points posed = skinned(surface.points, surface.skin, bones);
-  Eigen::VectorXf distances(posed.rows());
+  ScanDistances distances{Eigen::VectorXf(posed.rows())};
   for (Eigen::Index i = 0; i < posed.rows(); ++i)
-    distances[i] = std::sqrt(scan.tree.nearest(posed.row(i).transpose()).squared);
+    distances.off[i] = std::sqrt(scan.tree.nearest(posed.row(i).transpose()).squared);
+  std::vector<double> apart;
+  std::vector<PointTree::Near> near;
+  for (Eigen::Index i = 0; i < scan.points.rows(); i += 1 + scan.points.rows() / kAsked) {
+    scan.tree.nearest(scan.points.row(i).transpose(), 2, near);
+    apart.push_back(std::sqrt(near.back().squared));
+  }
+  distances.spacing_m = static_cast<float>(percentile(apart, 50));
   return distances;
 }
 

@@ -31,9 +31,12 @@ struct ArticulatedFitOptions {
 void fit_bones(const Rig& rig, const FittedSurface& surface, const ThinnedFrame& scan,
                const ArticulatedFitOptions& options, BoneMotions& bones);
 
-/// How far each of the surface's points is from the scan, [N] metres.
-Eigen::VectorXf distances_to(const ThinnedFrame& scan, const FittedSurface& surface,
-                             const BoneMotions& bones);
+/// How far a surface is from a scan.
+struct ScanDistances {
+  Eigen::VectorXf off;  ///< [N] of each of its points from the scan's nearest, metres
+  float spacing_m = 0;  ///< of the scan: from a point to the next, the median
+};
+ScanDistances distances_to(const ThinnedFrame& scan, const FittedSurface& surface, const BoneMotions& bones);
 
 /// Weights at places between points whose weights are known: of the nearest ones, the more the nearer.
 SkinWeights weights_between(const Points& places, const Points& known, const SkinWeights& weights, int bones);

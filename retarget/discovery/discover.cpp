@@ -78,10 +78,10 @@ class Discovery {
   void find_joints_again();
   void drop_still_bones();
   void track_from_bones();
-  void follow_others(DiscoveredRig& result);
+  void follow_others(DiscoveredRig& result, BoneDistances& off);
   void close_surface(Rig& rig) const;
   DiscoveredRig finished();
-  void judge_bones(DiscoveredRig& result) const;
+  void judge_key_frames(DiscoveredRig& result, BoneDistances& off) const;
 
   const ScanSequence& scans_;
   const DiscoveryOptions& options_;
@@ -220,20 +220,17 @@ void Discovery::track_from_bones() {
   track_again(frames_, tracks_, tracking_progress(kTrackingEnds, kTrackedAgain));
 }
 
-void Discovery::judge_bones(DiscoveredRig& result) const {
-  BoneDistances off(result.found.rig.count());
+void Discovery::judge_key_frames(DiscoveredRig& result, BoneDistances& off) const {
   for (size_t t = 0; t < frames_.size(); ++t) {
-    const Eigen::VectorXf distances = distances_to(frames_[t], surface_, bones_[t]);
+    const ScanDistances distances = distances_to(frames_[t], surface_, bones_[t]);
     off.add(surface_.skin, distances);
-    result.off_m[static_cast<size_t>(numbers_[t])] = distances.mean();
+    result.off_m[static_cast<size_t>(numbers_[t])] = distances.off.mean();
   }
-  measure_motion(result.found, result.bones);
-  for (size_t j = 0; j < result.bones.size(); ++j) result.bones[j].off_m = off.mean(j);
 }
 
 /// Frames that are no key frames: from the key frame before them on. What cannot be used repeats the pose
 /// before.
-void Discovery::follow_others(DiscoveredRig& result) {
+void Discovery::follow_others(DiscoveredRig& result, BoneDistances& off) {
   RigFollower follower(result.found.rig);
   std::vector<RigPose>& poses = result.found.motion.poses;
   size_t next = 0;  // key frame
@@ -252,7 +249,8 @@ void Discovery::follow_others(DiscoveredRig& result) {
     try {
       const RigFollower::Followed followed = follower.follow(scans_.scan(t));
       pose = last = followed.pose;
-      result.off_m[static_cast<size_t>(t)] = followed.off_m;
+      result.off_m[static_cast<size_t>(t)] = followed.off_m();
+      off.add(follower.surface().skin, followed.distances);
     } catch (const Error&) {  // no points: repeated
     }
   }
@@ -286,8 +284,11 @@ DiscoveredRig Discovery::finished() {
     bones_[t] = bone_motions(rig, pose);
   }
   if (rig.surface.is_cloud()) close_surface(rig);
-  if (static_cast<int>(frames_.size()) < scans_.count) follow_others(result);
-  judge_bones(result);
+  BoneDistances off(rig.count());
+  if (static_cast<int>(frames_.size()) < scans_.count) follow_others(result, off);
+  judge_key_frames(result, off);
+  measure_motion(result.found, result.bones);
+  off.tell(result.bones);
   result.doubted = doubted_frames(result.off_m);
   result.complete = goes_on_;
   return result;

@@ -8,13 +8,30 @@
 
 namespace understudy {
 
-void BoneDistances::add(const SkinWeights& skin, const Eigen::VectorXf& distances) {
-  for (Eigen::Index i = 0; i < distances.size(); ++i)
+void BoneDistances::add(const SkinWeights& skin, const ScanDistances& distances) {
+  constexpr float kNear = 3;  // spacings
+  constexpr int kOneOf = 5;   // points that a bone moves most
+  std::vector<int> own(seen_.size(), 0), shown(seen_.size(), 0);
+  for (Eigen::Index i = 0; i < distances.off.size(); ++i) {
     for (int k = 0; k < kSkinBones; ++k) {
       const auto bone = static_cast<size_t>(skin.bones(i, k));
-      off_[bone] += skin.weights(i, k) * distances[i];
+      off_[bone] += skin.weights(i, k) * distances.off[i];
       weight_[bone] += skin.weights(i, k);
     }
+    const auto most = static_cast<size_t>(skin.main_bone(i));
+    ++own[most];
+    if (distances.off[i] <= kNear * distances.spacing_m) ++shown[most];
+  }
+  for (size_t bone = 0; bone < seen_.size(); ++bone)
+    if (own[bone] > 0 && kOneOf * shown[bone] >= own[bone]) ++seen_[bone];
+  ++frames_;
+}
+
+void BoneDistances::tell(std::vector<FoundBone>& bones) const {
+  for (size_t j = 0; j < bones.size(); ++j) {
+    bones[j].off_m = static_cast<float>(off_[j] / weight_[j]);
+    if (frames_ > 0) bones[j].seen_share = static_cast<float>(seen_[j]) / static_cast<float>(frames_);
+  }
 }
 
 void measure_motion(const RiggedMotion& performed, std::vector<FoundBone>& bones) {

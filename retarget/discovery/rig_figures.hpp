@@ -8,20 +8,27 @@
 
 namespace understudy {
 
-/// How far each bone's surface is from the scans, gathered frame by frame.
+/// How far each bone's surface is from the scans, and in how many it is seen, gathered frame by frame. A bone
+/// is seen in a frame where at least a fifth of the points that it moves most have one of the scan within
+/// three times the scan's spacing.
 class BoneDistances {
  public:
   explicit BoneDistances(int bones)
-      : off_(static_cast<size_t>(bones), 0), weight_(static_cast<size_t>(bones), 1e-9) {}
-  /// Of one frame: of each point of a surface with these weights, metres.
-  void add(const SkinWeights& skin, const Eigen::VectorXf& distances);
-  float mean(size_t bone) const { return static_cast<float>(off_[bone] / weight_[bone]); }
+      : off_(static_cast<size_t>(bones), 0),
+        weight_(static_cast<size_t>(bones), 1e-9),
+        seen_(static_cast<size_t>(bones), 0) {}
+  /// Of one frame, of a surface with these weights.
+  void add(const SkinWeights& skin, const ScanDistances& distances);
+  /// Sets off_m and seen_share, [J]; the latter is not known without a frame.
+  void tell(std::vector<FoundBone>& bones) const;
 
  private:
   std::vector<double> off_, weight_;
+  std::vector<int> seen_;
+  int frames_ = 0;
 };
 
-/// How far bones turn and slide in a motion, [J]; off_m stays as it was.
+/// How far bones turn and slide in a motion, [J]; the other figures stay as they were.
 void measure_motion(const RiggedMotion& performed, std::vector<FoundBone>& bones);
 
 /// [T] frames that fit clearly worse than the others, or are not known (below 0).

@@ -73,8 +73,8 @@ RigFollower::Followed RigFollower::fit(const ThinnedFrame& scan, BoneMotions bon
   options.last_radius_m = 0.8f * spacing_m_;
   options.joint_stiffness = kRigidJoints;
   fit_bones(rig_, surface_, scan, options, bones);
-  Followed followed{pose_of(rig_, bones), 0};
-  followed.off_m = distances_to(scan, surface_, bone_motions(rig_, followed.pose)).mean();
+  Followed followed{pose_of(rig_, bones), {}};
+  followed.distances = distances_to(scan, surface_, bone_motions(rig_, followed.pose));
   return followed;
 }
 

@@ -16,7 +16,8 @@ class RigFollower {
 
   struct Followed {
     RigPose pose;
-    float off_m = 0;  ///< of the surface from the scan, mean over its points
+    ScanDistances distances;  ///< of surface() in that pose
+    float off_m() const { return distances.off.mean(); }
   };
   /// Throws Error for a scan without 30 finite points.
   Followed follow(const Mesh& scan);

@@ -29,7 +29,7 @@ class RefitWay {
 
   struct Frame {
     RigPose pose;
-    Eigen::VectorXf off{};  // of each point of the surface, metres; empty: not known
+    std::optional<ScanDistances> distances{};  // none: not known
   };
   Frame fitted(size_t t, const Mesh& mesh) {
     std::optional<ThinnedFrame> scan;
@@ -40,9 +40,9 @@ class RefitWay {
     }
     RigFollower::Followed best = follower_.fit(*scan, bone_motions(rig_, poses_[t])),
                           led = follower_.fit(*scan, led_on(before_, last_, places_));
-    if (led.off_m < best.off_m) std::swap(best, led);
+    if (led.off_m() < best.off_m()) std::swap(best, led);
     before_ = std::exchange(last_, bone_motions(rig_, best.pose));
-    return {best.pose, distances_to(*scan, follower_.surface(), last_)};
+    return {std::move(best.pose), std::move(best.distances)};
   }
 
  private:
@@ -103,12 +103,12 @@ bool refit(DiscoveredRig& rig, const ScanSequence& scans, const RefitProgress& p
   for (size_t t = 0; t < frames.size(); ++t) {
     const RefitWay::Frame& frame = frames[t];
     found.motion.poses[t] = frame.pose;
-    rig.off_m.push_back(frame.off.size() > 0 ? frame.off.mean() : -1);
-    if (frame.off.size() > 0) off.add(follower.surface().skin, frame.off);
+    rig.off_m.push_back(frame.distances ? frame.distances->off.mean() : -1);
+    if (frame.distances) off.add(follower.surface().skin, *frame.distances);
   }
   rig.doubted = doubted_frames(rig.off_m);
   measure_motion(found, rig.bones);
-  for (size_t j = 0; j < rig.bones.size(); ++j) rig.bones[j].off_m = off.mean(j);
+  off.tell(rig.bones);
   return true;
 }
 

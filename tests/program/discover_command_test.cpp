@@ -39,7 +39,11 @@ TEST_F(DiscoverCommand, ALampsBonesAreFoundAndItsFileOpensAgain) {
   EXPECT_GE(bones, 2u);
   EXPECT_NE(run.out.find(std::to_string(bones) + " bones"), std::string::npos) << run.out;
   double most = 0;
-  for (const Json& bone : report["bones"]) most = std::max(most, bone["turned_deg"].get<double>());
+  for (const Json& bone : report["bones"]) {
+    most = std::max(most, bone["turned_deg"].get<double>());
+    EXPECT_GT(bone["seen_share"].get<double>(), 0.5) << bone << ": its scans hide nothing";
+    EXPECT_LE(bone["seen_share"].get<double>(), 1);
+  }
   EXPECT_GT(most, 5);
   const RiggedMotion read = from_character(read_character(out("rig.glb")), 0, 30);
   EXPECT_EQ(read.rig.joints.size(), bones);

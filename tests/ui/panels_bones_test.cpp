@@ -19,7 +19,7 @@ std::shared_ptr<const DiscoveredRig> three_bones() {
   for (int v = 0; v < 30; ++v) bones.push_back(v < 17 ? 0 : v < 25 ? 1 : 2);
   found.skin = SkinWeights::rigid(bones);
   rig->found.motion.poses.assign(48, rest_pose(found));
-  rig->bones = {{0, 0, 0.004f}, {33, 0, 0.006f}, {12, 0, 0.0082f}};
+  rig->bones = {{0, 0, 0.004f, 1}, {33, 0, 0.006f, 0.5f}, {12, 0, 0.0082f}};
   rig->off_m.assign(48, 0.005f), rig->doubted.assign(48, false);
   rig->off_m[30] = 0.03f, rig->doubted[30] = true;
   return rig;

@@ -145,7 +145,13 @@ void draw_table(const BonesDrawing& d) {
   const float height = line * (static_cast<float>(std::min(d.rig().count(), 14)) + 1.6f);
   ImGui::PushStyleVar(ImGuiStyleVar_CellPadding, {d.ui().px(4), ImGui::GetStyle().CellPadding.y});
   Table table(d.ui(), "bones.bone",
-              {{"Bone"}, {"Hangs on"}, {"Kind", 40}, {"Turns", 44, true}, {"Off, mm", 50, true}}, height);
+              {{"Bone"},
+               {"Hangs on"},
+               {"Kind", 40},
+               {"Turns", 44, true},
+               {"Off, mm", 50, true},
+               {"Seen in", 48, true}},
+              height);
   ImGui::PopStyleVar();
   if (!table.open()) return;
   for (int j = 0; j < d.rig().count(); ++j) {
@@ -159,6 +165,8 @@ void draw_table(const BonesDrawing& d) {
     table.cell(kJointKindNames[static_cast<size_t>(joint.kind)]);
     table.cell(turned(joint, bone));
     table.cell(printed("%.1f", 1000 * static_cast<double>(bone.off_m)));
+    table.cell(bone.seen_share < 0 ? "\u2013"
+                                   : printed("%.0f %%", 100 * static_cast<double>(bone.seen_share)));
   }
 }
 

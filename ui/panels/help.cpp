@@ -48,7 +48,8 @@ std::vector<MouseUse> own_uses(app::Tool tool) {
       return {{"Click a joint of the target", "Chooses its bone"},
               {"Drag a ring", "Turns it in the rest pose"}};
     case app::Tool::Paint:
-      return {{"Click a joint or a found one", "Chooses whose weights are painted"}, {"Drag on the target or on a found surface", "Paints them"}};
+      return {{"Click a joint or a found one", "Chooses whose weights are painted"},
+              {"Drag on the target or on a found surface", "Paints them"}};
     case app::Tool::Crop:
       return {{"Drag a handle of the box", "Moves that side of it"}};
     default:

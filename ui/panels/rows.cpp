@@ -5,6 +5,7 @@
 #include <cstdlib>
 
 #include "retarget/base/text.hpp"
+#include "ui/panels/bindings.hpp"
 
 namespace understudy::ui {
 namespace {
@@ -98,10 +99,10 @@ void brush_rows(const app::Session& session, PanelContext& context, const std::s
   ask_number(context,
              {prefix + ".brush_radius", "Radius", "Radius of the brush on the surface", "tool.brush_radius"},
              session.brush.radius_m, {0.005f, 0.5f, 0.0005f, "%.3f m"});
-  ask_number(context,
-             {prefix + ".brush_strength", "Strength", "Strength of a stroke at its centre",
-              "tool.brush_strength"},
-             session.brush.strength, {0.01f, 1, 0.005f, "%.2f"});
+  ask_number(
+      context,
+      {prefix + ".brush_strength", "Strength", "Strength of a stroke at its centre", "tool.brush_strength"},
+      session.brush.strength, {0.01f, 1, 0.005f, "%.2f"});
   ask_choice(context, {prefix + ".brush_mode", "Brush", "What a stroke does", "tool.brush_mode"},
              {"Add", "Subtract", "Smooth"}, {kBrushModeNames.begin(), kBrushModeNames.end()},
              kBrushModeNames[static_cast<size_t>(session.brush.mode)]);

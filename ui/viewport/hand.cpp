@@ -186,8 +186,7 @@ void Hand::grab(const HandPlace& place, const Subject& subject, const Pointer& p
                 app::CommandQueue& queue) {
   const Session& session = place.session;
   joint_ = handle_ != GizmoHandle::None ? subject.selected : hovered_;
-  if (joint_ != subject.selected)
-    queue.push_back(choice_of(joint_));
+  if (joint_ != subject.selected) queue.push_back(choice_of(joint_));
   if (session.playback.playing) queue.push_back({"playback.pause", {}});
   const bool limb = subject.grip == Grip::Bone && handle_ == GizmoHandle::None;
   const bool by_rings = turns(subject.grip) && !limb && handle_ == GizmoHandle::None;
@@ -453,8 +452,8 @@ std::optional<Hand::Touch> Hand::touch(const HandPlace& place, const ImVec2& at)
   const auto hit = on_found_ ? found_under(session, *place.bones, ray)
                              : take_under(session, place.pane, place.pictures, ray);
   if (!hit) return std::nullopt;
-  const Mesh& mesh = on_found_ ? session.bones.rig->found.rig.surface
-                               : first_take(session, place.pane)->target->mesh;
+  const Mesh& mesh =
+      on_found_ ? session.bones.rig->found.rig.surface : first_take(session, place.pane)->target->mesh;
   const Points& normals = on_found_ ? *place.bones->normals : place.pictures.takes[0]->normals;
   Touch touch{{hit->position - moved, Vec3::UnitY()}, Vec3::Zero()};
   if (normals.rows() > hit->vertex) touch.brush.normal = normals.row(hit->vertex);

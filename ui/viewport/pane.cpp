@@ -253,11 +253,10 @@ std::string value_under(const Session& session, const Pane& pane, const ImVec2& 
   if (legend.title.empty() || (values == nullptr && legend.categories.empty())) return "";
   const int person = pane.made.values_take + 1;
   const render::Ray ray = pane.view.shifted(aside(session, pane.content, person)).ray(at);
-  const auto hit = paints_found_bones(session, pane.content)
-                       ? found_under(session, pane.memory.bones, pane.view.ray(at))
-                   : pane.made.values_take < 0
-                       ? scan_under(session, pane, ray)
-                       : take_under(session, pane.content, pane.keeper.pictures(), ray);
+  const auto hit =
+      paints_found_bones(session, pane.content) ? found_under(session, pane.memory.bones, pane.view.ray(at))
+      : pane.made.values_take < 0               ? scan_under(session, pane, ray)
+                                  : take_under(session, pane.content, pane.keeper.pictures(), ray);
   if (!hit) return "";
   if (values == nullptr) return weight_words(session, pane, hit->vertex);
   return hit->vertex < values->size() ? figure(static_cast<double>((*values)[hit->vertex]), legend.unit) : "";

@@ -215,8 +215,8 @@ Vec3 aside(const Session& session, const PaneContent& pane, int person) {
 }
 
 bool tool_on_found_bones(const Session& session, const PaneContent& pane) {
-  const bool can = session.tool == app::Tool::Paint ||
-                   (session.tool == app::Tool::Bones && session.view.source.bones);
+  const bool can =
+      session.tool == app::Tool::Paint || (session.tool == app::Tool::Bones && session.view.source.bones);
   return can && pane.source && session.bones.rig && (pane.takes.empty() || session.bones.selected >= 0);
 }
 

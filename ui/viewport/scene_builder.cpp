@@ -199,7 +199,8 @@ void Builder::add_surface(render::MeshView view, bool as_points, float radius) {
 
 void Builder::add_scan() {
   const app::Layers& layers = session_.view.source;
-  if (layers.surface && in_.pictures.scan != nullptr && !bones_hide_scan(session_, in_.pane, in_.pictures.frame)) {
+  if (layers.surface && in_.pictures.scan != nullptr &&
+      !bones_hide_scan(session_, in_.pane, in_.pictures.frame)) {
     const auto& scan = shown_scan().shown;
     const SurfaceColours& made = scan_colors();
     render::MeshView view;

@@ -227,7 +227,7 @@ void Views::set_up(const Frame& f, Pane& pane, const PaneContent& content, const
 void Views::interact(const Frame& f, Pane& pane) {
   const Pointer now = pointer_of_item();
   const PaneView seen = tool_view(f.session, pane);
-  const HandPlace place{f.session, pane.content, seen, pane.keeper.pictures(), f.context.ui.scale(),
+  const HandPlace place{f.session,         pane.content, seen, pane.keeper.pictures(), f.context.ui.scale(),
                         &pane.memory.bones};
   const bool taken = hand_.work(place, now, f.context.queue);
   if (now.over || now.held) {
@@ -342,7 +342,7 @@ bool Views::waits(const Pane& pane) const {
 void Views::make_picture(const Frame& f, Pane& pane) {
   if (waits(pane) && pane.canvas.seen_from(pane.view.camera, pane.view.size())) return;
   const PaneView seen = tool_view(f.session, pane);
-  const HandPlace place{f.session, pane.content, seen, pane.keeper.pictures(), f.context.ui.scale(),
+  const HandPlace place{f.session,         pane.content, seen, pane.keeper.pictures(), f.context.ui.scale(),
                         &pane.memory.bones};
   PanePictures pictures = pane.keeper.pictures();
   pane.preview = hand_.preview(place);
@@ -459,8 +459,7 @@ int Views::bone_at_pointer(const Session& session, const Pane& pane) const {
 }
 
 void Views::label_bones(const Session& session, const Pane& pane, Overlay& overlay) const {
-  const auto bones =
-      posed_bones(session, pane.content, pane.keeper.pictures().frame, pane.preview.found);
+  const auto bones = posed_bones(session, pane.content, pane.keeper.pictures().frame, pane.preview.found);
   if (!bones) return;
   for (Overlay::Label& label : bone_labels(session, pane.view.shifted(aside(session, pane.content, 0)),
                                            *bones, bone_at_pointer(session, pane)))

@@ -130,7 +130,7 @@ TEST(RigFollower, LaysAFoundRigOnFurtherScans) {
   follower.start_from(rig.found.motion.poses.back());
   float off = 1;
   for (int t = 0; t < 4; ++t)
-    off = follower.follow(bent_arm(angle_at(kFrames - 1 - t), 100 + static_cast<uint64_t>(t))).off_m;
+    off = follower.follow(bent_arm(angle_at(kFrames - 1 - t), 100 + static_cast<uint64_t>(t))).off_m();
   EXPECT_LT(off, 0.02f);
 }
 
