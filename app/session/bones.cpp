@@ -35,7 +35,7 @@ struct BonesJob {
 
 namespace {
 
-constexpr size_t kRigsKept = 6;
+constexpr size_t kRigsKept = 16;  // so many edits are undone without another search
 
 /// The scans as they are shown: edited, and of several people the source's own.
 ScanSequence scans_of(const BonesJob& work) {

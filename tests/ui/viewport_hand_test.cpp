@@ -686,14 +686,15 @@ TEST_F(ViewsTest, AStrokeOverAFoundSurfaceIsOneEditOfItsChosenBone) {
   stage.session.tool = app::Tool::Paint;
   stage.session.brush.mode = BrushMode::Subtract;
   frame(3);
-  const ImVec2 from = seen(0, Vec3(0.02f, 1.3f, 0)), to = seen(0, Vec3(0.02f, 1.1f, 0));
-  drag(from, to);
+  const auto stroke = [this] { drag(seen(0, Vec3(0.02f, 1.3f, 0)), seen(0, Vec3(0.02f, 1.1f, 0))); };
+  stroke();
   EXPECT_EQ(count("bones.paint"), 0) << "no bone is chosen";
+  queue.clear();
   click(seen(0, Vec3(0, 1.4f, 0)));
   EXPECT_EQ(stage.session.bones.selected, 1) << "by its joint";
   EXPECT_EQ(count("bones.paint"), 0);
   frame(3);
-  drag(from, to);
+  stroke();
   EXPECT_EQ(count("bones.paint"), 1);
   EXPECT_EQ(count("edit.paint") + count("view.camera_state"), 0);
   const app::Arguments words = asked("bones.paint");

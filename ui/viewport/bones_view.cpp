@@ -117,8 +117,7 @@ const RigPose* pose_in(const DiscoveredRig& rig, int frame, const FoundPreview& 
 /// By bone, or by the weights of the one that is painted.
 void paint_surface(const BonesInput& in, BonesMemory& memory) {
   const int selected = in.session.bones.selected;
-  const bool painting =
-      paints_found_bones(in.session, in.pane) && selected >= 0 && selected < memory.weights.cols();
+  const bool painting = paints_found_bones(in.session, in.pane) && selected < memory.weights.cols();
   if (memory.colors->rows() > 0 && memory.selected == selected && memory.painting == painting) return;
   memory.selected = selected, memory.painting = painting;
   memory.values = nullptr;

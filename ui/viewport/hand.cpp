@@ -56,7 +56,7 @@ std::optional<Hand::Subject> Hand::subject_of(const HandPlace& place) {
   const Session& session = place.session;
   const app::TakeState* take = first_take(session, place.pane);
   const bool rest = shows_rest(session, place.pane);
-  if (tool_on_found_bones(session, place.pane)) return found_subject(place);
+  if (session.tool == Tool::Bones && tool_on_found_bones(session, place.pane)) return found_subject(place);
   Subject subject;
   subject.take = place.pane.takes.empty() ? -1 : place.pane.takes[0];
   subject.selected = session.selected_joint;
@@ -196,7 +196,7 @@ void Hand::grab(const HandPlace& place, const Subject& subject, const Pointer& p
   frame_ = place.pictures.frame, take_ = subject.take;
   before_ = subject.joints;
   gizmo_ = gizmo_of(subject, joint_), handles_ = subject.handles;
-  rig_before_ = on_found_ ? session.bones.rig : nullptr;
+  rig_before_ = on_found_ ? session.bones.rig : nullptr, turned_pose_ = nullptr;
   start_ = last_ = place.view.ray(pointer.at);
   offset_.setZero();
   corrections_.resize(0, 3);
@@ -210,11 +210,20 @@ void Hand::grab(const HandPlace& place, const Subject& subject, const Pointer& p
                                            : take->deformer->offsets(*pose);
 }
 
+/// The pose that is gripped of a found rig, with its bone as it is turned now.
+std::shared_ptr<const RigPose> Hand::turned_found() const {
+  const DiscoveredRig& rig = *rig_before_;
+  const RigPose& pose = rig.found.motion.poses[static_cast<size_t>(app::frame_of_rig(rig, frame_))];
+  return std::make_shared<const RigPose>(understudy::turned(rig.found.rig, pose, {joint_, 0, offset_}));
+}
+
 void Hand::drag(const HandPlace& place, const Pointer& pointer) {
   const render::Ray now = place.view.ray(pointer.at);
   const render::Camera& camera = place.view.camera;
   if (turns(grip_)) {  // step by step, so that more than half a turn is one, too
-    offset_ += render::turned(gizmo_, handle_, camera, last_, now) * handles_.col(axis_of(handle_));
+    const float angle = render::turned(gizmo_, handle_, camera, last_, now);
+    offset_ += angle * handles_.col(axis_of(handle_));
+    if (grip_ == Grip::FoundBone && angle != 0) turned_pose_ = turned_found();
     tip_ = figure(static_cast<double>(offset_.norm() * 180 / kPi), "deg");
   } else {
     offset_ = render::dragged(gizmo_, handle_, camera, start_, now);
@@ -337,13 +346,8 @@ Joints Hand::moved_joints(const HandPlace& place) const {
 FoundPreview Hand::found_preview(const HandPlace& place) const {
   FoundPreview preview;
   if (!of_found(current()) || !shown_in(place)) return preview;
+  if (current() == Grip::FoundBone) preview.pose = turned_pose_;
   if (current() == Grip::FoundPaint) preview.skin = painted_skin_;
-  if (current() != Grip::FoundBone) return preview;
-  const DiscoveredRig& rig = *rig_before_;
-  const RigPose& pose =
-      rig.found.motion.poses[static_cast<size_t>(app::frame_of_rig(rig, place.pictures.frame))];
-  const TurnBone turn{joint_, 0, offset_};
-  preview.pose = std::make_shared<const RigPose>(understudy::turned(rig.found.rig, pose, turn));
   return preview;
 }
 

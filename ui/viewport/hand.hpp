@@ -103,6 +103,7 @@ class Hand {
   std::optional<PosedSkeleton> turned_skeleton(const app::Session& session) const;
   bool beyond_reach(const app::Session& session) const;
   bool shown_in(const HandPlace& place) const;
+  std::shared_ptr<const RigPose> turned_found() const;
   FoundPreview found_preview(const HandPlace& place) const;
   std::shared_ptr<const app::PosedPicture> released_picture(const HandPlace& place) const;
 
@@ -122,6 +123,7 @@ class Hand {
   Mat3 handles_ = Mat3::Identity();  ///< of the subject
   Vec3 offset_ = Vec3::Zero();       ///< metres, world; of what turns: axis times angle, in the joint's frame
   std::shared_ptr<const DiscoveredRig> rig_before_;  ///< of FoundBone and FoundPaint
+  std::shared_ptr<const RigPose> turned_pose_;       ///< of FoundBone; null: nothing has been turned yet
   PaintBone stroke_;                                 ///< of FoundPaint, as far as it has come
   RiggedMotion painted_;                             ///< the rig with it
   std::shared_ptr<const SkinWeights> painted_skin_;

@@ -221,7 +221,8 @@ bool tool_on_found_bones(const Session& session, const PaneContent& pane) {
 }
 
 bool paints_found_bones(const Session& session, const PaneContent& pane) {
-  return session.tool == app::Tool::Paint && tool_on_found_bones(session, pane);
+  return session.tool == app::Tool::Paint && session.bones.selected >= 0 &&
+         tool_on_found_bones(session, pane);
 }
 
 int person_of_tool(const Session& session, const PaneContent& pane) {

@@ -66,7 +66,7 @@ Vec3 aside(const app::Session& session, const PaneContent& pane, int person);
 /// Whether the tool in use is about the bones that were found in the source: where they are shown in a pane
 /// (or painted), and one of them is chosen where the pane shows takes, too.
 bool tool_on_found_bones(const app::Session& session, const PaneContent& pane);
-/// Whether their weights are painted there.
+/// Whether the weights of one of them are painted there.
 bool paints_found_bones(const app::Session& session, const PaneContent& pane);
 /// Whom the tool in use and the joints' names are about, as app::pane_joints() numbers people.
 int person_of_tool(const app::Session& session, const PaneContent& pane);
