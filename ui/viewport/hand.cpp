@@ -135,6 +135,7 @@ bool Hand::work(const HandPlace& place, const Pointer& pointer, app::CommandQueu
   const bool here = pointer.over || pointer.held || pointer.released;
   if (busy() && !(place.pane == pane_)) return false;
   if (place.session.time >= settle_until_) released_ = {};
+  if (of_found(settling_) && place.session.bones.rig != rig_before_) settling_ = Grip::None;  // it is there
   if (!here && !busy()) {
     if (place.pane == pane_) leave();
     return false;
