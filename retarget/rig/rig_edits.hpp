@@ -94,10 +94,10 @@ FieldsOf<S, RenameBone> fields(V& visit, S& edit) {
   visit("name", edit.name);
 }
 
-/// A stroke of a brush on the rest surface, dab by dab. A dab falls off smoothly to nothing at its radius, and
+/// A stroke of a brush on the rest surface, dab by dab. A dab falls off smoothly to nothing at its radius; it
 /// reaches only what hangs together with its middle within the radius (of clouds: all). The bone's weight
 /// grows towards 1 or shrinks towards 0; the others of the vertex share the rest as before, where there are
-/// none it is the parent's (of the root: of the first that hangs on it). Smooth brings all weights of a vertex
+/// none it is the parent's (of the root: of the first that hangs on it). Smooth brings a vertex's weights
 /// nearer to their mean over it and the six nearest under the dab. Of five bones the least one goes, be it
 /// the painted one. Refused without a dab.
 struct PaintBone {

@@ -94,7 +94,7 @@ struct Pane {
 /// Where a ray meets the mesh of a pane's first take, as its pictures show it.
 std::optional<render::SurfaceHit> take_under(const app::Session& session, const PaneContent& pane,
                                              const PanePictures& pictures, const render::Ray& ray);
-/// Where a ray meets the found surface as it was drawn last, of a cloud its point; none where it is not drawn.
+/// Where a ray meets the found surface as it was drawn last, of a cloud its point; none where it is not.
 std::optional<render::SurfaceHit> found_under(const app::Session& session, const BonesMemory& drawn,
                                               const render::Ray& ray);
 /// The figure under the pointer where a surface shows figures: "12.4 mm", "left knee 0.83"; else empty.
