@@ -16,6 +16,7 @@
 #include "render/colors.hpp"
 #include "render/image.hpp"
 #include "retarget/base/error.hpp"
+#include "retarget/base/index.hpp"
 #include "retarget/base/part_file.hpp"
 #include "retarget/base/text.hpp"
 #include "retarget/character/gltf_character.hpp"
@@ -138,9 +139,9 @@ void tell(const DiscoveredRig& rig) {
                 kJointKindNames[static_cast<size_t>(joint.kind)],
                 static_cast<double>(rig.bones[j].turned_deg), 1000 * static_cast<double>(rig.bones[j].off_m));
   }
-  int doubted = 0;
-  for (const bool frame : rig.doubted) doubted += frame ? 1 : 0;
-  if (doubted > 0) std::printf("%d frames fit clearly worse than the others\n", doubted);
+  const auto doubted = std::count(rig.doubted.begin(), rig.doubted.end(), true);
+  if (doubted > 0)
+    std::printf("%td of %td frames fit clearly worse or could not be used\n", doubted, ssize(rig.doubted));
   if (!rig.complete) std::printf("ended early: this is the best that was found by then\n");
 }
 
@@ -157,7 +158,7 @@ void write_files(const DiscoverOptions& options, const DiscoveredRig& rig, const
 
 int find_rig(const DiscoverOptions& options) {
   const std::shared_ptr<Source> source = open_source(as_it_is(options.source));
-  const ScanSequence scans = scan_sequence(source);
+  const ScanSequence scans = scan_sequence(source, options.source.path);
   const DiscoveredRig rig = found_in(scans, options);
   tell(rig);
   write_files(options, rig, source->to_file(), {{"source", options.source.path}});
@@ -170,7 +171,7 @@ int follow_rig(const DiscoverOptions& options) {
   const RiggedMotion known = read_rig(options.rig);
   const std::shared_ptr<Source> source = open_source(as_it_is(options.source));
   Progress progress("following", source->count().value_or(0));
-  const FollowedScans followed = follow_scans(known, *source, [&](int64_t frames) {
+  const FollowedScans followed = follow_scans(known, *source, options.source.path, [&](int64_t frames) {
     progress.step(frames);
     return !interrupted();
   });
@@ -186,13 +187,13 @@ int follow_rig(const DiscoverOptions& options) {
   write_files(options, followed.rig, source->to_file(), more);
   if (options.preview.empty()) return 0;
   source->seek(0);
-  write_sheet(options, followed.rig, scan_sequence(source));
+  write_sheet(options, followed.rig, scan_sequence(source, options.source.path));
   return 0;
 }
 
 RiggedMotion performing_source(const DiscoverOptions& options) {
   if (!options.rig.empty()) return read_rig(options.rig);
-  return found_in(scan_sequence(open_source(as_it_is(options.source))), options).found;
+  return found_in(scan_sequence(open_source(as_it_is(options.source)), options.source.path), options).found;
 }
 
 /// The partners in the file, or those that were found, which go into the file.
@@ -200,7 +201,9 @@ BoneMatches matches_of(const DiscoverOptions& options, const LaidBody& laid, con
                        const RiggedMotion& target) {
   if (!options.matches.empty() && std::filesystem::exists(options.matches))
     return read_matches(options.matches, source.rig, target.rig);
-  BoneMatches matches = match_bones(laid, source, target);
+  BoneMatches matches;
+  const std::string wrong = failure_of([&] { matches = match_bones(laid, source, target); });
+  US_CHECK(wrong.empty(), options.perform, ": ", wrong);
   if (options.matches.empty()) return matches;
   write_json(options.matches, to_json(matches, source.rig, target.rig));
   std::printf("%s: the partners; change them there and run this again\n", options.matches.c_str());

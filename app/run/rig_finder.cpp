@@ -39,8 +39,13 @@ SourceOptions as_it_is(SourceOptions options) {
   return options;
 }
 
-ScanSequence scan_sequence(std::shared_ptr<Source> source) {
+ScanSequence scan_sequence(std::shared_ptr<Source> source, const std::string& name) {
   ScanSequence scans;
+  scans.name = name;
+  const auto first = source->next();
+  US_CHECK(!first || !first->skeleton, name,
+           ": a skeletal motion has its bones already: a skeleton is found in scans");
+  source->seek(0);
   scans.count = length_of(*source);
   scans.fps = source->fps();
   int next = 0;  // that the source hands out
@@ -48,8 +53,6 @@ ScanSequence scan_sequence(std::shared_ptr<Source> source) {
     if (frame != next) source->seek(frame);
     next = frame + 1;
     const auto read = source->next();
-    US_CHECK(!read || !read->skeleton,
-             "a skeletal motion has its bones already: a skeleton is found in scans");
     return read && read->usable ? read->mesh : Mesh{};
   };
   return scans;

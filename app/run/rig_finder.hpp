@@ -16,8 +16,8 @@ namespace understudy::app {
 SourceOptions as_it_is(SourceOptions options);
 
 /// The scans of a source as discover() reads them; it stays open. A source whose length is not known is read
-/// through once. Throws Error where it holds no scans.
-ScanSequence scan_sequence(std::shared_ptr<Source> source);
+/// through once. name: its path. Throws Error naming it where it holds no scans.
+ScanSequence scan_sequence(std::shared_ptr<Source> source, const std::string& name);
 
 /// discover() as an evaluation calls it.
 RigFinder rig_finder();

@@ -52,7 +52,7 @@ RiggedMotion read_rig(const std::string& path) {
   return read;
 }
 
-FollowedScans follow_scans(const RiggedMotion& known, Source& source,
+FollowedScans follow_scans(const RiggedMotion& known, Source& source, const std::string& name,
                            const std::function<bool(int64_t)>& going_on) {
   constexpr Eigen::Index kFewest = 30;
   FollowedScans followed;
@@ -79,8 +79,8 @@ FollowedScans follow_scans(const RiggedMotion& known, Source& source,
     rig.complete = going_on(ssize(rig.off_m));
     if (!rig.complete) break;
   }
-  US_CHECK(begun, "no scan has ", kFewest, " points: there is nothing to lay the rig on");
-  rig.doubted = doubted_frames(rig.off_m);
+  US_CHECK(begun, name, ": no scan has ", kFewest, " points: there is nothing to lay the rig on");
+  rig.doubted = doubted_frames(rig.off_m, box_diagonal(known.rig.surface.vertices));
   measure_motion(rig.found, rig.bones);
   of_bones.tell(rig.bones);
   return followed;
@@ -90,10 +90,15 @@ OtherBody other_body(const std::string& path, const SourceOptions& like, const D
   if (is_rig_file(path)) return {read_rig(path)};
   SourceOptions options = as_it_is(like);
   options.path = path;
-  const ScanSequence scans = scan_sequence(open_source(options));
+  const ScanSequence scans = scan_sequence(open_source(options), path);
   OtherBody performing;
   performing.is_scan = scans.count == 1;
-  performing.body = performing.is_scan ? body_of_one_scan(scans.scan(0)) : discover(scans, how).found;
+  if (performing.is_scan) {
+    const std::string wrong = failure_of([&] { performing.body = body_of_one_scan(scans.scan(0)); });
+    US_CHECK(wrong.empty(), path, ": ", wrong);
+  } else {
+    performing.body = discover(scans, how).found;
+  }
   performing.body.rig.name = file_name(path);
   return performing;
 }

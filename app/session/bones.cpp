@@ -42,7 +42,7 @@ ScanSequence scans_of(const BonesJob& work) {
   SourceOptions quiet = work.source;
   quiet.quiet = true;
   quiet.follow = false;
-  ScanSequence scans = scan_sequence(open_source(quiet, work.blender.get()));
+  ScanSequence scans = scan_sequence(open_source(quiet, work.blender.get()), name_of(quiet));
   scans.scan = [read = scans.scan, &work](int frame) {
     Mesh scan = read(frame);
     if (scan.vertices.rows() == 0) return scan;

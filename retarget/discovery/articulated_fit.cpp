@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 
+#include "retarget/discovery/bone_equations.hpp"
 #include "retarget/math/percentile.hpp"
 #include "retarget/math/rotation.hpp"
 
@@ -171,7 +172,7 @@ void BoneFit::round(float radius, BoneMotions& bones) {
     normal_.block<3, 3>(6 * b, 6 * b).diagonal().array() += stays * reach_[s] * reach_[s] + 1e-9;
     normal_.block<3, 3>(6 * b + 3, 6 * b + 3).diagonal().array() += stays;
   }
-  const Eigen::VectorXd step = normal_.ldlt().solve(gradient_);
+  const Eigen::VectorXd step = solved(normal_, gradient_);
   for (int b = 0; b < count_; ++b) {
     RigidMotion& bone = bones[static_cast<size_t>(b)];
     bone = stepped(bone, centres_.row(b).transpose(), step.segment<6>(6 * b).cast<float>());

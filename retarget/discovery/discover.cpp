@@ -9,12 +9,14 @@
 #include <utility>
 
 #include "retarget/base/error.hpp"
+#include "retarget/base/index.hpp"
 #include "retarget/base/log.hpp"
 #include "retarget/discovery/part_tree.hpp"
 #include "retarget/discovery/rest_surface.hpp"
 #include "retarget/discovery/rig_figures.hpp"
 #include "retarget/discovery/rig_follower.hpp"
 #include "retarget/discovery/scan_evidence.hpp"
+#include "retarget/discovery/seen_things.hpp"
 #include "retarget/discovery/turntables.hpp"
 #include "retarget/rig/rig_edits.hpp"
 
@@ -39,6 +41,11 @@ void in_halves(size_t count, const Function& f) {
   });
   for (size_t i = count / 2; i < count; ++i) f(i);
   first.join();
+}
+
+void check_count(const ScanSequence& scans, int usable, const std::string& wrong = {}) {
+  US_CHECK(usable >= 2, scans.name,
+           ": a skeleton is found in how a thing moves: that takes two frames or more, not ", usable, wrong);
 }
 
 /// All frames of a short sequence; of a long one every second or third, from the first on.
@@ -67,6 +74,7 @@ class Discovery {
 
  private:
   bool report(const char* stage, float share);
+  Mesh scan(int frame) const { return finite_part(scans_.scan(frame)); }
   TrackingProgress tracking_progress(float from, float to);
   void read_key_frames();
   int most_open() const;
@@ -114,18 +122,15 @@ void Discovery::read_key_frames() {
   std::string wrong;
   for (const int t : wanted) {
     try {
-      frames_.push_back(
-          thinned(scans_.scan(t), kTrackedPoints, kSurfacePoints, kSeed + static_cast<uint64_t>(t)));
+      frames_.push_back(thinned(scan(t), kTrackedPoints, kSurfacePoints, kSeed + static_cast<uint64_t>(t)));
       numbers_.push_back(t);
     } catch (const Error& error) {
       wrong = "; frame " + std::to_string(t) + ": " + error.what();
     }
     const float share = static_cast<float>(t) / static_cast<float>(wanted.back() + 1);
-    US_CHECK(report("Reading", kReadingEnds * share), "ended before a skeleton was found");
+    US_CHECK(report("Reading", kReadingEnds * share), scans_.name, ": ended before a skeleton was found");
   }
-  US_CHECK(frames_.size() >= 2,
-           "a skeleton is found in how a thing moves: that takes two frames or more, not ", frames_.size(),
-           wrong);
+  check_count(scans_, ssize(frames_), wrong);
 }
 
 int Discovery::most_open() const {
@@ -247,7 +252,7 @@ void Discovery::follow_others(DiscoveredRig& result, BoneDistances& off) {
                 kBonesEnd + (1 - kBonesEnd) * static_cast<float>(t) / static_cast<float>(scans_.count)))
       continue;
     try {
-      const RigFollower::Followed followed = follower.follow(scans_.scan(t));
+      const RigFollower::Followed followed = follower.follow(scan(t));
       pose = last = followed.pose;
       result.off_m[static_cast<size_t>(t)] = followed.off_m();
       off.add(follower.surface().skin, followed.distances);
@@ -272,7 +277,7 @@ DiscoveredRig Discovery::finished() {
   Rig& rig = result.found.rig;
   rig = tree_.rig;
   rig.name = "found";
-  rig.surface = scans_.scan(result.rest_frame);
+  rig.surface = scan(result.rest_frame);
   rig.skin = weights_between(rig.surface.vertices, surface_.points, surface_.skin, rig.count());
   RigMotion& motion = result.found.motion;
   motion.fps = scans_.fps;
@@ -289,13 +294,14 @@ DiscoveredRig Discovery::finished() {
   judge_key_frames(result, off);
   measure_motion(result.found, result.bones);
   off.tell(result.bones);
-  result.doubted = doubted_frames(result.off_m);
+  result.doubted = doubted_frames(result.off_m, box_diagonal(tracks_.graph.points));
   result.complete = goes_on_;
   return result;
 }
 
 DiscoveredRig Discovery::run() {
   read_key_frames();
+  warn_of_more_than_one(frames_, scans_.name);
   tracks_ = track_surface(frames_, most_open(), kNodes, tracking_progress(kReadingEnds, kTrackingEnds));
   for (int round = 0; round < kRounds; ++round) {
     rest_what_may(frames_, tracks_);
@@ -317,8 +323,7 @@ DiscoveredRig Discovery::run() {
 }  // namespace
 
 DiscoveredRig discover(const ScanSequence& scans, const DiscoveryOptions& options) {
-  US_CHECK(scans.count >= 2, "a skeleton is found in how a thing moves: that takes two frames or more, not ",
-           scans.count);
+  check_count(scans, scans.count);
   return Discovery(scans, options).run();
 }
 

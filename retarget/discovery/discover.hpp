@@ -11,6 +11,7 @@ namespace understudy {
 
 /// Scans of one thing alone, in the order of time, read when they are asked for.
 struct ScanSequence {
+  std::string name = "the scans";  ///< for messages: a path
   int count = 0;
   double fps = 30;
   std::function<Mesh(int)> scan;  ///< by number, on one thread; empty: the frame cannot be used
@@ -63,8 +64,9 @@ struct DiscoveredRig {
 /// Tracks the surface of the most open frame through up to 60 key frames, joins what moves alike to rigid
 /// parts, finds their joints and tree, and fits the rig to the scans; other frames are followed. After Chang
 /// and Zwicker 2011 and Le and Deng 2014, without correspondence. Looks at all frames, unlike RigFollower.
-/// The same scans give the same bytes. Throws Error where fewer than two frames can be used, and where it
-/// is ended before a skeleton was found.
+/// The same scans give the same bytes. Throws Error naming the scans where fewer than two frames can be
+/// used, and where it is ended before a skeleton was found. Warns of scans that seem to show more than one
+/// thing.
 DiscoveredRig discover(const ScanSequence& scans, const DiscoveryOptions& options = {});
 
 }  // namespace understudy

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "retarget/base/index.hpp"
+#include "retarget/discovery/bone_equations.hpp"
 #include "retarget/math/rotation.hpp"
 
 namespace understudy {
@@ -229,7 +230,7 @@ void Stretching::solve() {
     normal_.block<2, 2>(kNumbers * b + 6, kNumbers * b + 6).diagonal().array() +=
         stays * reach_[s] * reach_[s] + 1e-12;
   }
-  const Eigen::VectorXd step = normal_.ldlt().solve(gradient_);
+  const Eigen::VectorXd step = solved(normal_, gradient_);
   for (int b = 0; b < count_; ++b) {
     StretchedBone& bone = bones_[static_cast<size_t>(b)];
     const Eigen::Matrix<float, kNumbers, 1> of = step.segment<kNumbers>(kNumbers * b).cast<float>();

@@ -48,15 +48,19 @@ void measure_motion(const RiggedMotion& performed, std::vector<FoundBone>& bones
   }
 }
 
-std::vector<bool> doubted_frames(const std::vector<float>& off_m) {
-  constexpr float kMuch = 2;
+std::vector<bool> doubted_frames(const std::vector<float>& off_m, float size_m) {
+  constexpr float kMuch = 2, kMuchOfSize = 0.02f;
   std::vector<double> known;
   for (const float off : off_m)
     if (off >= 0) known.push_back(off);
-  const auto usual = known.empty() ? 0.0f : static_cast<float>(percentile(known, 50));
+  const auto share = [&](double percent) {
+    return known.empty() ? 0.0f : static_cast<float>(percentile(known, percent));
+  };
+  const float usual = share(50), good = share(25);
   std::vector<bool> doubted;
   doubted.reserve(off_m.size());
-  for (const float off : off_m) doubted.push_back(off < 0 || off > kMuch * usual);
+  for (const float off : off_m)
+    doubted.push_back(off < 0 || off > kMuch * usual || off > std::max(kMuch * good, kMuchOfSize * size_m));
   return doubted;
 }
 

@@ -31,7 +31,8 @@ class BoneDistances {
 /// How far bones turn and slide in a motion, [J]; the other figures stay as they were.
 void measure_motion(const RiggedMotion& performed, std::vector<FoundBone>& bones);
 
-/// [T] frames that fit clearly worse than the others, or are not known (below 0).
-std::vector<bool> doubted_frames(const std::vector<float>& off_m);
+/// [T] frames that fit clearly worse than the others, or are not known (below 0). Where most fit badly, those
+/// that are off by much of the body's size (the diagonal of its box) are compared with the best quarter.
+std::vector<bool> doubted_frames(const std::vector<float>& off_m, float size_m);
 
 }  // namespace understudy

@@ -106,7 +106,7 @@ bool refit(DiscoveredRig& rig, const ScanSequence& scans, const RefitProgress& p
     rig.off_m.push_back(frame.distances ? frame.distances->off.mean() : -1);
     if (frame.distances) off.add(follower.surface().skin, *frame.distances);
   }
-  rig.doubted = doubted_frames(rig.off_m);
+  rig.doubted = doubted_frames(rig.off_m, box_diagonal(found.rig.surface.vertices));
   measure_motion(found, rig.bones);
   off.tell(rig.bones);
   return true;

@@ -120,10 +120,10 @@ RiggedMotion body_of_one_scan(const Mesh& scan) {
   RigJoint& only = body.rig.joints.emplace_back();
   only.name = "body";
   only.kind = JointKind::Free;
-  body.rig.surface = scan;
-  if (scan.is_cloud()) {
-    const ThinnedFrame points =
-        thinned(scan, static_cast<int>(scan.vertices.rows()), static_cast<int>(scan.vertices.rows()), 1);
+  body.rig.surface = finite_part(scan);
+  if (body.rig.surface.is_cloud()) {
+    const auto all = static_cast<int>(body.rig.surface.vertices.rows());
+    const ThinnedFrame points = thinned(body.rig.surface, all, all, 1);
     constexpr int kVertices = 7000;
     body.rig.surface = closed_surface({points.points, points.normals}, kVertices);
   }

@@ -66,6 +66,14 @@ void join_pieces(const Points& points, SurfaceGraph& graph) {
 
 }  // namespace
 
+Mesh finite_part(Mesh scan) {
+  if (scan.vertices.allFinite()) return scan;
+  std::vector<char> kept;
+  kept.reserve(static_cast<size_t>(scan.vertices.rows()));
+  for (const auto& vertex : scan.vertices.rowwise()) kept.push_back(vertex.allFinite() ? 1 : 0);
+  return kept_part(scan, kept);
+}
+
 ThinnedFrame thinned(const Mesh& scan, int spread, int count, uint64_t seed) {
   Points points = finite_points(scan.vertices), normals(0, 3);
   US_CHECK(points.rows() >= kFewest, "a scan of ", points.rows(), " points is too few to find a skeleton in");

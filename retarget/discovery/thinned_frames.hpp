@@ -16,6 +16,9 @@ struct ThinnedFrame {
   PointTree tree;  ///< of the points
 };
 
+/// A scan without its vertices that are not finite.
+Mesh finite_part(Mesh scan);
+
 /// `spread` points of a scan that lie far apart, and others up to `count`; fewer where it has fewer. The same
 /// scan and seed give the same points. Throws Error for a scan without 30 finite points.
 ThinnedFrame thinned(const Mesh& scan, int spread, int count, uint64_t seed);
