@@ -1,5 +1,6 @@
 #include "retarget/discovery/thinned_frames.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <limits>

@@ -145,7 +145,7 @@ TEST_F(DiscoverBadInput, KilledItLeavesWhatWasThere) {
 }
 
 TEST_F(DiscoverBadInput, AFullDisk) {
-  const std::string source = arm("arm.npz", 3, 0);
+  const std::string source = arm("arm.npz", 3), known = rig("arm.glb", test::bending_arm(3));
   ProgramOptions full;
   full.file_size_limit = 200;
   for (const auto& [option, name] : std::vector<std::pair<std::string, std::string>>{{"--out", "a.glb"},
@@ -154,7 +154,7 @@ TEST_F(DiscoverBadInput, AFullDisk) {
                                                                                      {"--result", "a.npz"},
                                                                                      {"--report", "a.json"},
                                                                                      {"--preview", "a.png"}})
-    expect_clean_failure(discover(source, {option, out(name)}, full), name);
+    expect_clean_failure(discover(source, {"--rig", known, option, out(name)}, full), name);
 }
 
 TEST_F(DiscoverBadInput, ARigOfThreeHundredBonesIsFollowedAndPerformed) {

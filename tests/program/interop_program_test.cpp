@@ -8,8 +8,12 @@
 #include "retarget/base/error.hpp"
 #include "retarget/character/gltf_character.hpp"
 #include "retarget/character/read_character.hpp"
+#include "retarget/character/rig_character.hpp"
+#include "retarget/creature/creature.hpp"
+#include "retarget/formats/npz.hpp"
 #include "tests/app/program.hpp"
 #include "tests/app/sample_files.hpp"
+#include "tests/interop/assimp_scene.hpp"
 #include "tests/interop/exported.hpp"
 #include "tests/retarget/character/characters.hpp"
 
@@ -64,6 +68,91 @@ TEST_F(ExportedByTheProgram, IsReadAlikeWhereverTheCharacterCameFrom) {
   expect_read_alike({exported(folder.path("character.glb"), "glb.glb", {"--morphs", "3"}),
                      exported(as("collada", "from.dae"), "dae.gltf"),
                      exported(folder.path("bare.obj"), "obj.glb", {"--morphs", "3"})});
+}
+
+/// A rig as a file, and where its surface is in some of its frames.
+struct MovingRig {
+  std::string path;
+  std::vector<int> frames;
+  std::vector<Points> surfaces;
+};
+
+class FoundByTheProgram : public testing::Test {
+ protected:
+  static constexpr int kFrames = 8;
+  static constexpr double kFps = 30;
+  static const std::vector<int>& shown() {
+    static const std::vector<int> frames = {0, 3, kFrames - 1};
+    return frames;
+  }
+  /// Scans of the first creature of a kind.
+  std::string scans_of(const std::string& kind) {
+    if (!std::filesystem::exists(folder.path("cases")))
+      EXPECT_EQ(run_program({"cases", "--suite", "creatures", "--out", folder.path("cases"), "--cases", "5",
+                             "--frames", std::to_string(kFrames), "--points", "2000"})
+                    .code,
+                0);
+    for (const auto& one : std::filesystem::directory_iterator(folder.path("cases")))
+      if (one.path().filename().string().rfind(kind, 0) == 0) return (one.path() / "source").string();
+    throw Error("no scans of " + kind);
+  }
+  /// As the program finds it in these scans, by its archive.
+  MovingRig found(const std::string& kind) {
+    const std::string path = folder.path(kind + ".glb"), archive = folder.path(kind + ".npz");
+    ProgramOptions patient;
+    patient.patience_s = 600;
+    const Finished run =
+        run_program({"discover", "--source", scans_of(kind), "--out", path, "--result", archive}, patient);
+    US_CHECK(run.code == 0, kind, " ended with ", run.code, ": ", run.err);
+    const NpyArray surfaces = read_npz(archive).at("vertices");
+    MovingRig rig{path, shown(), {}};
+    const auto vertices = static_cast<Eigen::Index>(surfaces.shape[1]);
+    for (const int frame : shown())
+      rig.surfaces.emplace_back(
+          Eigen::Map<const Points>(surfaces.values.data() + 3 * vertices * frame, vertices, 3));
+    return rig;
+  }
+  /// Hinges and a slider.
+  MovingRig excavator() {
+    RiggedMotion made{make_creature(CreatureKind::Excavator, 100), {}};
+    made.motion = creature_motion(CreatureKind::Excavator, made.rig, 0, kFrames, kFps, 100);
+    MovingRig rig{folder.path("true.glb"), shown(), {}};
+    write_gltf_character(rig.path, to_character(made));
+    for (const int frame : shown())
+      rig.surfaces.push_back(skinned(made.rig.surface.vertices, made.rig.skin,
+                                     bone_motions(made.rig, made.motion.poses[static_cast<size_t>(frame)])));
+    return rig;
+  }
+  static void expect_same(const std::vector<Points>& theirs, const MovingRig& rig, const char* program) {
+    for (size_t t = 0; t < rig.frames.size(); ++t)
+      EXPECT_LT(largest_mm(theirs[t], rig.surfaces[t]), box_diagonal(rig.surfaces[t]))  // a thousandth of it
+          << program << ", " << rig.path << ", frame " << rig.frames[t];
+  }
+  ScratchFolder folder;
+};
+
+TEST_F(FoundByTheProgram, RigsMoveElsewhereAsTheyDoHere) {
+  const std::vector<MovingRig> rigs = {found("excavator"), found("quadruped"), excavator()};
+  std::vector<std::string> paths;
+  std::vector<PlayJob> jobs;
+  for (const MovingRig& rig : rigs) {
+    std::vector<float> times;
+    for (const int frame : rig.frames) times.push_back(static_cast<float>(frame / kFps));
+    paths.push_back(rig.path);
+    jobs.push_back({rig.path, rig.path + ".three", 0, kFps, times});
+  }
+  for (const auto& report : validated(paths))
+    EXPECT_EQ(report["messages"], nlohmann::json::array()) << report["file"];
+  const auto said = run_script("three_play.mjs", {"chromium", write_jobs(jobs)});
+  for (size_t i = 0; i < rigs.size(); ++i) {
+    ASSERT_FALSE(said[i].contains("failed")) << paths[i] << ": " << said[i]["failed"];
+    EXPECT_GT(said[i].value("covered", 0.0), 0.005) << paths[i] << " is hardly to be seen";
+    expect_same(read_positions(jobs[i], rigs[i].surfaces[0].rows()), rigs[i], "three.js");
+    AssimpScene scene(paths[i], read_character(paths[i]));
+    std::vector<Points> read;
+    for (const float seconds : jobs[i].times) read.push_back(scene.at(0, seconds));
+    expect_same(read, rigs[i], "assimp");
+  }
 }
 
 }  // namespace
