@@ -3,6 +3,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
 
@@ -10,6 +11,7 @@
 #include "retarget/base/index.hpp"
 #include "retarget/base/log.hpp"
 #include "retarget/base/text.hpp"
+#include "retarget/character/picture.hpp"
 #include "retarget/formats/motion_writers.hpp"
 #include "retarget/math/rotation.hpp"
 
@@ -26,6 +28,7 @@ CharacterPart part_of(const Rig& rig, int node) {
   part.name = rig.name;
   part.node = node;
   part.skin = 0;
+  part.material = 0;
   part.vertices = rig.surface.vertices;
   part.faces = rig.surface.faces;
   if (!rig.surface.is_cloud()) part.normals = vertex_normals(part.vertices, part.faces);
@@ -304,6 +307,9 @@ Character to_character(const RiggedMotion& performed) {
   if (rig.surface.vertices.rows() > 0) {
     character.nodes.push_back({rig.name.empty() ? "surface" : rig.name, -1, {}, {}});
     character.parts.push_back(part_of(rig, rig.count()));
+    // Without one glTF's own is metal, which programs draw black where nothing is reflected in it.
+    const Vec3 color = Vec3::Constant(rig.surface.colors.rows() > 0 ? 1.0f : 0.8f);
+    character.materials.push_back(plain_material("surface", color, 1, -1).dump());
   }
   if (performed.motion.poses.empty()) return character;
   CharacterAnimation animation = animation_of(performed, character);

@@ -169,8 +169,10 @@ class Page {
     return this.click(`[...document.querySelectorAll('button')].find(one => !one.hidden && one.offsetParent &&
                        one.innerText.startsWith(${wanted}))`);
   }
+  /// As .png or .webp.
   async screenshot(path) {
-    const {data} = await this.send('Page.captureScreenshot', {format: 'png'});
+    const kind = path.endsWith('.webp') ? {format: 'webp', quality: 80} : {format: 'png'};
+    const {data} = await this.send('Page.captureScreenshot', kind);
     await writeFile(path, Buffer.from(data, 'base64'));
   }
   close() {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <nlohmann/json.hpp>
 
 #include "retarget/base/error.hpp"
 #include "retarget/character/gltf_character.hpp"
@@ -86,6 +87,13 @@ TEST(RigCharacter, HasTracksOfWhatMovesAlone) {
                                                             {0, TrackPath::Translation},
                                                             {1, TrackPath::Rotation},
                                                             {2, TrackPath::Translation}}));
+}
+
+TEST(RigCharacter, IsNotMadeOfMetal) {
+  const Character file = through_bytes(to_character(telescope()));
+  ASSERT_EQ(file.parts[0].material, 0);
+  const auto material = nlohmann::json::parse(file.materials.at(0)).at("pbrMetallicRoughness");
+  EXPECT_EQ(material.at("metallicFactor"), 0);
 }
 
 TEST(RigCharacter, TurnsThroughMoreThanHalfATurn) {
