@@ -197,15 +197,15 @@ RiggedMotion performing_source(const DiscoverOptions& options) {
 }
 
 /// The partners in the file, or those that were found, which go into the file.
-BoneMatches matches_of(const DiscoverOptions& options, const LaidBody& laid, const RiggedMotion& source,
-                       const RiggedMotion& target) {
+BoneMatches wanted_matches(const DiscoverOptions& options, const LaidOther& other,
+                           const understudy::Rig& source) {
   if (!options.matches.empty() && std::filesystem::exists(options.matches))
-    return read_matches(options.matches, source.rig, target.rig);
-  BoneMatches matches;
-  const std::string wrong = failure_of([&] { matches = match_bones(laid, source, target); });
+    return read_matches(options.matches, source, other.body.rig);
+  BoneMatches matches = matches_of(other, source);
+  const std::string wrong = failure_of([&] { check_matches(matches, source, other.body.rig); });
   US_CHECK(wrong.empty(), options.perform, ": ", wrong);
   if (options.matches.empty()) return matches;
-  write_json(options.matches, to_json(matches, source.rig, target.rig));
+  write_json(options.matches, to_json(matches, source, other.body.rig));
   std::printf("%s: the partners; change them there and run this again\n", options.matches.c_str());
   return matches;
 }
@@ -235,16 +235,14 @@ DiscoveredRig as_discovered(RiggedMotion performed) {
 int perform_rig(const DiscoverOptions& options) {
   const RiggedMotion source = performing_source(options);
   Progress progress("finding the skeleton of what performs", 100, false, "%");
-  OtherBody target = other_body(options.perform, options.source, discovery_options(options, progress));
+  const OtherBody read = other_body(options.perform, options.source, discovery_options(options, progress));
   progress.finish();
-  US_CHECK(!target.is_scan || options.matches.empty(), options.perform,
+  US_CHECK(!read.is_scan || options.matches.empty(), options.perform,
            ": one scan has no bones of its own to match: --matches does not apply");
-  const LaidBody laid = lay_on(source, target.body);
-  if (target.is_scan) target.body = rig_laid_on(source, target.body, laid);
-  const BoneMatches matches =
-      target.is_scan ? same_bones(source.rig.count()) : matches_of(options, laid, source, target.body);
+  const LaidOther target = laid_other(source, read);
+  const BoneMatches matches = wanted_matches(options, target, source.rig);
   tell(matches, source.rig, target.body.rig);
-  const DiscoveredRig rig = as_discovered(performed_by(source, target.body, laid, matches));
+  const DiscoveredRig rig = as_discovered(performed_by(source, target.body, target.laid, matches));
   Json more = {{"source", options.rig.empty() ? options.source.path : options.rig},
                {"performed_by", options.perform}};
   more["matches"] = to_json(matches, source.rig, rig.found.rig)["bones"];

@@ -4,11 +4,11 @@
 
 #include "app/run/case_source.hpp"
 #include "app/run/interrupt.hpp"
+#include "app/run/rig_performance.hpp"
 #include "retarget/base/clock.hpp"
 #include "retarget/base/error.hpp"
 #include "retarget/base/index.hpp"
 #include "retarget/discovery/rig_follower.hpp"
-#include "retarget/discovery/rig_retarget.hpp"
 #include "retarget/metrics/rig_metrics.hpp"
 
 namespace understudy::app {
@@ -54,21 +54,20 @@ RigEvaluation evaluate_pair(const Case& c, const RigFinder& find, const ScanEdit
   RigEvaluation evaluation;
   const auto began = std::chrono::steady_clock::now();
   const FoundRig source = find(scans, c.fps), target = find(target_scans, c.fps);
-  const LaidBody laid = lay_on(source.found, target.found);
+  const LaidOther other = laid_other(source.found, {target.found});
   const RiggedMotion performed =
-      performed_by(source.found, target.found, laid, match_bones(laid, source.found, target.found));
+      performed_by(source.found, other.body, other.laid, matches_of(other, source.found.rig));
   evaluation.found_ms = ms_since(began);
   evaluation.frames = ssize(scans) + ssize(target_scans);
   evaluation.metrics.emplace_back(
       "retarget_pct", performance_error_pct(performed, target.found.rig.surface.vertices, *own.rig,
                                             target.rest_frame, wanted.rig->vertices));
-  const RiggedMotion only = body_of_one_scan(target_scans[0]);
-  const LaidBody laid_once = lay_on(source.found, only);
-  const RiggedMotion made = rig_laid_on(source.found, only, laid_once);
+  const LaidOther once = laid_other(source.found, {body_of_one_scan(target_scans[0]), true});
   evaluation.metrics.emplace_back(
       "retarget_scan_pct",
-      performance_error_pct(performed_by(source.found, made, laid_once, same_bones(made.rig.count())),
-                            made.rig.surface.vertices, *own.rig, 0, wanted.rig->vertices));
+      performance_error_pct(
+          performed_by(source.found, once.body, once.laid, matches_of(once, source.found.rig)),
+          once.body.rig.surface.vertices, *own.rig, 0, wanted.rig->vertices));
   return evaluation;
 }
 

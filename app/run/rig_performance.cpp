@@ -31,10 +31,11 @@ double key_rate(const Character& character) {
   return static_cast<double>(longest->size() - 1) / static_cast<double>(longest->back() - longest->front());
 }
 
-int bone_named(const understudy::Rig& rig, const std::string& name, const std::string& path) {
-  for (int j = 0; j < rig.count(); ++j)
-    if (rig.joints[static_cast<size_t>(j)].name == name) return j;
-  throw Error(path + ": " + rig.name + " has no bone \"" + name + "\"");
+/// As read from a file.
+int known_bone(const understudy::Rig& rig, const std::string& name, const std::string& path) {
+  const int j = bone_named(rig, name);
+  US_CHECK(j >= 0, path, ": ", rig.name, " has no bone \"", name, "\"");
+  return j;
 }
 
 }  // namespace
@@ -103,6 +104,32 @@ OtherBody other_body(const std::string& path, const SourceOptions& like, const D
   return performing;
 }
 
+LaidOther laid_other(const RiggedMotion& first, const OtherBody& other) {
+  LaidOther second{other.body, other.is_scan, lay_on(first, other.body), {}};
+  if (other.is_scan)
+    second.body = rig_laid_on(first, other.body, second.laid);
+  else
+    second.costs = bone_costs(second.laid, first, other.body);
+  return second;
+}
+
+BoneMatches matches_of(const LaidOther& other, const understudy::Rig& first,
+                       const std::vector<ChosenMatch>& chosen) {
+  if (other.is_scan) return same_bones(first.count());
+  BoneMatches matches = match_bones(other.costs);
+  const auto part = [&](size_t k) { matches.partner[k] = -1, matches.cost[k] = 0; };
+  for (const ChosenMatch& match : chosen) {
+    const int j = bone_named(first, match.bone), k = bone_named(other.body.rig, match.partner);
+    if (j < 0 || (k < 0 && !match.partner.empty())) continue;
+    const auto now = std::find(matches.partner.begin(), matches.partner.end(), j);
+    if (now != matches.partner.end()) part(static_cast<size_t>(now - matches.partner.begin()));
+    if (k < 0) continue;
+    matches.partner[static_cast<size_t>(k)] = j;
+    matches.cost[static_cast<size_t>(k)] = static_cast<float>(other.costs(k, j));
+  }
+  return matches;
+}
+
 Json to_json(const BoneMatches& matches, const understudy::Rig& source, const understudy::Rig& target) {
   Json bones = Json::array();
   for (size_t k = 0; k < matches.partner.size(); ++k) {
@@ -128,8 +155,8 @@ BoneMatches read_matches(const std::string& path, const understudy::Rig& source,
              ": a row without \"bone\"");
     if (!bone.contains("partner") || bone["partner"].is_null()) continue;
     US_CHECK(bone["partner"].is_string(), path, ": a partner is the name of a bone, or null");
-    const auto at = static_cast<size_t>(bone_named(target, bone["bone"].get<std::string>(), path));
-    matches.partner[at] = bone_named(source, bone["partner"].get<std::string>(), path);
+    const auto at = static_cast<size_t>(known_bone(target, bone["bone"].get<std::string>(), path));
+    matches.partner[at] = known_bone(source, bone["partner"].get<std::string>(), path);
     if (bone.contains("cost") && bone["cost"].is_number()) matches.cost[at] = bone["cost"].get<float>();
   }
   const std::string wrong = failure_of([&] { check_matches(matches, source, target); });

@@ -36,6 +36,21 @@ struct OtherBody {
 /// Throws Error naming what cannot be read.
 OtherBody other_body(const std::string& path, const SourceOptions& like, const DiscoveryOptions& how);
 
+/// A second body laid on the first one, whose motion it shall perform.
+struct LaidOther {
+  RiggedMotion body;     ///< one scan has the first one's bones by now
+  bool is_scan = false;  ///< so it was one scan
+  LaidBody laid;
+  Eigen::MatrixXd costs;  ///< bone_costs(); of one scan nothing
+};
+/// Throws Error as lay_on() does.
+LaidOther laid_other(const RiggedMotion& first, const OtherBody& other);
+
+/// Those that are found (of one scan every bone itself), with the chosen ones put over them: what they take
+/// from others is missing there. Choices of bones that are not there are left out. May be none at all.
+BoneMatches matches_of(const LaidOther& other, const understudy::Rig& first,
+                       const std::vector<ChosenMatch>& chosen = {});
+
 /// {"bones": [{"bone": name, "partner": name or null, "cost": 0.1}, ...]}
 Json to_json(const BoneMatches& matches, const understudy::Rig& source, const understudy::Rig& target);
 /// Reads it again: bones of the target that it does not name have no partner. Throws Error naming the file

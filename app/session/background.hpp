@@ -73,6 +73,8 @@ struct Studio::Background {
   std::shared_ptr<BonesJob> bones_work;  // null: none runs
   std::string near_key;                  // of what BonesState::near was found from
   std::string autosave_problem;          // the last one reported
+  /// What the second body was last made to perform, or is made to; null: nothing yet.
+  std::shared_ptr<SecondBodyJob> second_work;
   double since_autosave = 0;
   std::shared_ptr<Autosaving> autosaving = std::make_shared<Autosaving>();
 };
@@ -80,6 +82,8 @@ struct Studio::Background {
 /// Leaves what is the person's of a frame's scan. False: that is nothing.
 bool cut_out(const KeptSource& kept, Mesh& scan);
 
+/// Whether the user is being asked where a file is: a second dialog need not say that it is missing.
+bool asked_for(const Session& session, const std::string& problem);
 /// Whether all frames of a take are performed.
 bool is_performed(const Session& session, size_t take);
 /// Whether both give the same poses: trim and skip only change what plays.

@@ -190,6 +190,13 @@ std::string bones_key(const OwnBones& bones, const std::string& source_key, size
   return key_of(source_key, bones.most, first);
 }
 
+/// A match is of the bone, whatever it is called.
+void rename_matches(OwnBones& bones, const DiscoveredRig& before, const RenameBone& edit) {
+  const std::string& name = before.found.rig.joints[static_cast<size_t>(edit.joint)].name;
+  for (ChosenMatch& match : bones.second.matches)
+    if (match.bone == name) match.bone = edit.name;
+}
+
 }  // namespace
 
 /// Makes what is shown of bones follow the document; begins the work that is missing.
@@ -312,6 +319,7 @@ void Studio::edit_bones(const RigEdit& edit) {
   if (std::holds_alternative<FitAgain>(edit)) return bones.edits.push_back(edit);
   auto rig = std::make_shared<DiscoveredRig>(*state.rig);
   const std::vector<int> numbers = understudy::apply(*rig, edit, ScanSequence{});
+  if (const auto* const renamed = std::get_if<RenameBone>(&edit)) rename_matches(bones, *state.rig, *renamed);
   bones.edits.push_back(edit);
   b.bones_key = bones_key(bones, b.source_key, bones.edits.size());
   const int* const selected = at_or_null(numbers, state.selected);

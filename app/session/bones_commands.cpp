@@ -27,6 +27,7 @@ void find_bones(Call& c) {
   OwnBones bones;
   bones.wanted = true;
   bones.most = c.document.bones.most;
+  bones.second.path = c.document.bones.second.path;
   if (!c.arguments.empty() && c.arguments[0] == "auto") bones.most = 0;
   if (!c.arguments.empty() && c.arguments[0] != "auto") {
     bones.most = c.number<int>(0, "number of bones");
@@ -41,43 +42,13 @@ void find_bones(Call& c) {
   show_panel(c.studio);
 }
 
-const DiscoveredRig& rig_of(const Call& c) {
-  US_CHECK(c.session.bones.rig, "no bones have been found yet");
-  return *c.session.bones.rig;
-}
-
 /// By name or number.
 int bone(const Call& c, size_t i) {
-  const std::string& word = c.word(i, "bone");
-  const auto& joints = rig_of(c).found.rig.joints;
-  for (size_t j = 0; j < joints.size(); ++j)
-    if (joints[j].name == word) return static_cast<int>(j);
-  int64_t number = 0;
-  US_CHECK(parse_integer(word, number) && number >= 0 && number < ssize(joints), "there is no bone '", word,
-           "'");
-  return static_cast<int>(number);
+  return static_cast<int>(bone_number(c, i, rig_of(c).found.rig));
 }
 
 const std::string& name_of_bone(const Call& c, int joint) {
   return rig_of(c).found.rig.joints[static_cast<size_t>(joint)].name;
-}
-
-void export_bones(Call& c) {
-  const std::string path = c.path(0);
-  const std::string suffix = file_suffix(path);
-  const bool is_motion = suffix == ".bvh";
-  US_CHECK(is_motion || suffix == ".glb" || suffix == ".gltf", path,
-           ": a found rig is written as .glb, .gltf or .bvh");
-  rig_of(c);
-  check_not_read(path, files_read_by(c.document));
-  check_writable(path);
-  c.studio.jobs().start(
-      "Exporting " + file_name(path),
-      [path, is_motion, rig = c.session.bones.rig](JobControl&) {
-        is_motion ? write_rig_bvh(path, rig->found) : write_gltf_character(path, to_character(rig->found));
-      },
-      [&studio = c.studio, path] { studio.notify("Exported " + file_name(path), false, showing(path)); });
-  remember_folder(c.studio, path);
 }
 
 /// Those that are near none of a person's joints stay as they are.
@@ -105,7 +76,10 @@ void add_finding(Commands& commands) {
   commands.add({"bones.select", "Select bone", "BONE|none: by name or number"},
                [](Call& c) { c.session.bones.selected = c.word(0, "bone") == "none" ? -1 : bone(c, 0); });
   commands.add({"bones.export", "Export the found rig", "PATH: .glb or .gltf; its motion alone as .bvh"},
-               export_bones);
+               [](Call& c) {
+                 const DiscoveredRig& rig = rig_of(c);
+                 export_rig(c, {c.session.bones.rig, &rig.found});
+               });
   commands.add_edit({"bones.name_as_joints", "Name bones after a person's joints"}, name_bones);
 }
 
@@ -225,6 +199,37 @@ void add_bones_commands(Commands& commands) {
       {"view.bone_surface", "Surface by bone",
        "off|over|beside: what was found, painted by bone, in place of the scan or beside it"},
       [](Call& c) { c.session.view.bone_surface = c.choice<BoneSurface>(0, "place", kBoneSurfaceNames); });
+}
+
+const DiscoveredRig& rig_of(const Call& c) {
+  US_CHECK(c.session.bones.rig, "no bones have been found yet");
+  return *c.session.bones.rig;
+}
+
+size_t bone_number(const Call& c, size_t i, const understudy::Rig& rig) {
+  const std::string& word = c.word(i, "bone");
+  if (const int named = bone_named(rig, word); named >= 0) return static_cast<size_t>(named);
+  int64_t number = 0;
+  US_CHECK(parse_integer(word, number) && number >= 0 && number < rig.count(), "there is no bone '", word,
+           "'");
+  return static_cast<size_t>(number);
+}
+
+void export_rig(Call& c, const std::shared_ptr<const RiggedMotion>& rig) {
+  const std::string path = c.path(0);
+  const std::string suffix = file_suffix(path);
+  const bool is_motion = suffix == ".bvh";
+  US_CHECK(is_motion || suffix == ".glb" || suffix == ".gltf", path,
+           ": a found rig is written as .glb, .gltf or .bvh");
+  check_not_read(path, files_read_by(c.document));
+  check_writable(path);
+  c.studio.jobs().start(
+      "Exporting " + file_name(path),
+      [path, is_motion, rig](JobControl&) {
+        is_motion ? write_rig_bvh(path, *rig) : write_gltf_character(path, to_character(*rig));
+      },
+      [&studio = c.studio, path] { studio.notify("Exported " + file_name(path), false, showing(path)); });
+  remember_folder(c.studio, path);
 }
 
 }  // namespace understudy::app

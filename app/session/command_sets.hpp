@@ -16,6 +16,7 @@ void add_export_commands(Commands& commands);
 void add_study_commands(Commands& commands);
 void add_map_commands(Commands& commands);
 void add_bones_commands(Commands& commands);
+void add_second_body_commands(Commands& commands);
 void add_program_commands(Commands& commands);
 void add_all_commands(Commands& commands);
 
@@ -86,6 +87,13 @@ void save_study(Studio& studio, const std::string& path);
 
 /// Another source in place of the open one: edits and settings of the old one's frames go with it.
 void set_source(Call& c, SourceOptions source);
+
+/// What was found in the source's scans. Throws Error where there is nothing yet.
+const DiscoveredRig& rig_of(const Call& c);
+/// A bone of a rig by name or number. Throws Error where it has no such bone.
+size_t bone_number(const Call& c, size_t i, const understudy::Rig& rig);
+/// Writes a rig to the call's path, in the background. Throws Error where that cannot be.
+void export_rig(Call& c, const std::shared_ptr<const RiggedMotion>& rig);
 
 /// The folder that a file or folder was opened from or saved in, for the next time; not that of the samples.
 void remember_folder(Studio& studio, const std::string& path);

@@ -11,6 +11,7 @@
 #include "app/run/source.hpp"
 #include "app/run/target_file.hpp"
 #include "retarget/base/fields.hpp"
+#include "retarget/discovery/bone_matching.hpp"
 #include "retarget/editing/pose_edits.hpp"
 #include "retarget/editing/scan_edits.hpp"
 #include "retarget/editing/skeleton_edits.hpp"
@@ -54,17 +55,30 @@ FieldsOf<S, Take> fields(V& visit, S& take) {
 
 constexpr int kMostBones = 300;  ///< that may be asked for
 
+/// Another body of the kind that performs what was found, as a recipe.
+struct SecondBody {
+  std::string path;  ///< a rig that was found before, one scan, or a folder of scans; empty: there is none
+  std::vector<ChosenMatch> matches;  ///< put over those that are found
+};
+template <class V, class S>
+FieldsOf<S, SecondBody> fields(V& visit, S& second) {
+  visit("path", second.path, FilePath{});
+  visit("matches", second.matches);
+}
+
 /// The skeleton of its own that is found in the source's scans, as a recipe: the same is found again.
 struct OwnBones {
   bool wanted = false;
   int most = 0;                ///< bones at most; 0: as many as the motion shows
   std::vector<RigEdit> edits;  ///< of what is found, one after the other
+  SecondBody second{};
 };
 template <class V, class S>
 FieldsOf<S, OwnBones> fields(V& visit, S& bones) {
   visit("wanted", bones.wanted);
   visit("most", bones.most, Within<int>{0, kMostBones});
   visit("edits", bones.edits);
+  visit("second", bones.second);
 }
 
 struct Document {
@@ -87,8 +101,9 @@ FieldsOf<S, Document> fields(V& visit, S& document) {
 
 /// All that the document reads; some may be empty.
 inline std::vector<std::string> files_read_by(const Document& document) {
-  std::vector<std::string> files = {document.source.path, document.source.motion, document.source.times,
-                                    document.source.markers, document.truth};
+  std::vector<std::string> files = {document.source.path,  document.source.motion,
+                                    document.source.times, document.source.markers,
+                                    document.truth,        document.bones.second.path};
   if (document.source.blend)
     for (const BlendPart& part : document.source.blend->parts) files.push_back(part.path);
   for (const Take& take : document.takes) files.push_back(take.target.path);

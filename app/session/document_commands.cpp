@@ -242,6 +242,7 @@ void Studio::replace_document(SavedDocument saved, const std::string& path) {
   background_->opened_targets.clear();
   background_->opened_source.reset();
   background_->bones_key.clear();
+  background_->second_work.reset();
   forget_incomplete_bones();
   session_.selected_joint = -1;
   session_.tool = Tool::Look;

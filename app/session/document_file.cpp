@@ -23,6 +23,7 @@ void visit_paths(Document& document, Visit visit) {
   visit(document.source.times);
   visit(document.source.markers);
   visit(document.truth);
+  visit(document.bones.second.path);
   if (document.source.blend)
     for (auto& part : document.source.blend->parts) visit(part.path);
   for (auto& take : document.takes) visit(take.target.path);

@@ -37,6 +37,21 @@ Vec3 spread_offset(const Session& session, int pane) {
   return {session.view.overlay.spread_m * from_middle, 0, 0};
 }
 
+float width_of(const Box& box) {
+  const Vec3 sides = box.high - box.low;
+  return std::max(sides.x(), 0.5f * sides.z());
+}
+
+Vec3 painted_place(const Session& session) {
+  if (session.view.bone_surface != BoneSurface::Beside || !session.bones.rig) return Vec3::Zero();
+  const auto box = extent_of(session.bones.rig->found.rig.surface.vertices);
+  return {box ? kApart * width_of(*box) : 0, 0, 0};
+}
+
+Vec3 second_place(const Session& session) {
+  return session.second.place + painted_place(session);
+}
+
 Vec3 follow_offset(const Session& session, int pane, int frame) {
   if (!session.view.follow) return Vec3::Zero();
   const double sigma = std::max(1.0, kSmoothing * session.source.fps);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "app/session/session.hpp"
+#include "retarget/editing/scan_edits.hpp"
 
 namespace understudy::app {
 
@@ -15,6 +16,17 @@ Vec3 follow_offset(const Session& session, int pane, int frame);
 /// How far a person stands from its place while the people of an overlay stand side by side, metres; zero in
 /// other layouts. pane: 0 the source, k the take k - 1.
 Vec3 spread_offset(const Session& session, int pane);
+
+/// Bodies beside each other are so many of their widths apart, from middle to middle.
+constexpr float kApart = 1.2f;
+/// Of a body as it is seen from the front, and half its length.
+float width_of(const Box& box);
+/// How far the surface that is painted by bone is from the scan: BoneSurface::Beside to the right of it, by
+/// more than its width, metres; else zero.
+Vec3 painted_place(const Session& session);
+/// How far the second body is from where it performs: to the right of the scan and of that surface, on the
+/// found body's floor, metres.
+Vec3 second_place(const Session& session);
 
 /// The joints of the person of a pane in a frame, as shown; null where they are not there.
 const Joints* pane_joints(const Session& session, int pane, int frame);

@@ -19,6 +19,7 @@
 #include "app/session/kept_owners.hpp"
 #include "app/session/map_state.hpp"
 #include "app/session/playback.hpp"
+#include "app/session/second_body_state.hpp"
 #include "app/session/series.hpp"
 #include "app/session/settings.hpp"
 #include "app/session/shared_frames.hpp"
@@ -174,6 +175,7 @@ struct Session {
   StudyState study;
   MapState map;
   BonesState bones;
+  SecondBodyState second;
   View view;
   Playback playback;
   Settings settings;

@@ -14,6 +14,7 @@ namespace understudy::app {
 
 struct SourceFrames;
 struct BonesJob;
+struct SecondBodyJob;
 
 /// Where the networks come from: the program passes the trained ones, tests their own.
 struct StudioServices {
@@ -92,6 +93,9 @@ class Studio {
   /// where it is refused. FitAgain is done in the background.
   void edit_bones(const RigEdit& edit);
 
+  /// Reads the second body once more where it did not come to perform.
+  void perform_again();
+
  private:
   struct Background;
   void keep_study_step(const Study& before, const std::string& label, const std::string& merge);
@@ -118,6 +122,9 @@ class Studio {
   void take_in_bones(BonesJob& work);
   void compare_bones();
   void forget_incomplete_bones();
+  void follow_second_body();
+  void start_second_body();
+  void take_in_second_body(SecondBodyJob& work);
   void note_openings(const Document& before, const std::vector<int64_t>& ids_before, bool changed_before);
   void roll_back_source();
   void note_source_read();

@@ -72,14 +72,6 @@ void append_shown(TakeState& take, int first, double fps) {
   }
 }
 
-/// Whether the user is being asked where a file is: a second dialog need not say that it is missing.
-bool asked_for(const Session& session, const std::string& problem) {
-  if (!session.question || session.question->kind != Question::Kind::MissingFiles) return false;
-  const auto& missing = session.question->missing;
-  return std::any_of(missing.begin(), missing.end(),
-                     [&](const std::string& path) { return problem.find(path) != std::string::npos; });
-}
-
 /// The series of both; where both have a key, the newer.
 void merge_series(std::vector<Series>& into, std::vector<Series> newer) {
   for (Series& series : newer) {
@@ -93,6 +85,13 @@ void merge_series(std::vector<Series>& into, std::vector<Series> newer) {
 }
 
 }  // namespace
+
+bool asked_for(const Session& session, const std::string& problem) {
+  if (!session.question || session.question->kind != Question::Kind::MissingFiles) return false;
+  const auto& missing = session.question->missing;
+  return std::any_of(missing.begin(), missing.end(),
+                     [&](const std::string& path) { return problem.find(path) != std::string::npos; });
+}
 
 bool cut_out(const KeptSource& kept, Mesh& scan) {
   if (!kept.owners) return true;
@@ -498,6 +497,7 @@ void Studio::take_in_results() {
     b.people_before.clear(), session_.source.people = b.people_now;
   offer_fills();
   follow_bones();
+  follow_second_body();
   measure_finished();
 }
 

@@ -111,6 +111,18 @@ Extent scan_extent(const Session& session, int pane, int frame, const Joints& jo
   return all.isEmpty() ? grown(kBody) : all;
 }
 
+/// What performs beside the scan, and what was found where it stands beside it.
+void add_bodies_beside(Extent& all, const Session& session, int frame, const Vec3& offset) {
+  const int at = session.bones.rig ? frame_of_rig(*session.bones.rig, frame) : -1;
+  if (at < 0) return;
+  const auto add = [&](const RiggedMotion& body, const Vec3& place) {
+    const BoneMotions bones = bone_motions(body.rig, body.motion.poses[static_cast<size_t>(at)]);
+    add_points(all, skinned(body.rig.surface.vertices, body.rig.skin, bones), offset - place);
+  };
+  if (session.view.bone_surface == BoneSurface::Beside) add(session.bones.rig->found, painted_place(session));
+  if (session.second.performed) add(*session.second.performed, second_place(session));
+}
+
 /// What a pane draws: the surface; the joints where there is none.
 void add_pane(Extent& all, const Session& session, int pane, int frame) {
   const TakeState* const take = at_or_null(session.takes, pane - 1);
@@ -127,6 +139,7 @@ void add_pane(Extent& all, const Session& session, int pane, int frame) {
     add_points(all, take->deformer->deform(take->shown.poses[frame]), offset);
   else
     all.extend(scan_extent(session, pane, frame, *joints).translate(-offset));
+  if (pane == 0) add_bodies_beside(all, session, frame, offset);
 }
 
 /// Of the panes that share the active camera.

@@ -80,6 +80,12 @@ std::string bone_weights(const Session& session) {
   return printed("%.3f", static_cast<double>((skin.bones.array() == bone).select(skin.weights, 0).sum()));
 }
 
+/// Of the body that performs what the found one does; 0: none does.
+std::string second_bones(const Session& session) {
+  const auto& performed = session.second.performed;
+  return std::to_string(performed ? performed->rig.count() : 0);
+}
+
 }  // namespace
 
 std::vector<std::pair<std::string, std::string>> facts(const Session& session) {
@@ -96,6 +102,8 @@ std::vector<std::pair<std::string, std::string>> facts(const Session& session) {
       {"bone", std::to_string(session.bones.selected)},
       {"bone_turn", bone_turn(session)},
       {"bone_weights", bone_weights(session)},
+      {"second_bones", second_bones(session)},
+      {"second_matches", count(session.document.bones.second.matches.size())},
       {"bones_stage", session.bones.job != 0 ? session.bones.stage : "none"},
       {"people", count(session.source.people.size())},
       {"person", std::to_string(session.source.person)},

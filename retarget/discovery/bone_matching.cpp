@@ -140,6 +140,12 @@ ProportionFit fitted(const Look& look, const Rig& source, const SkinWeights& ski
 
 }  // namespace
 
+int bone_named(const Rig& rig, const std::string& name) {
+  const auto found = std::find_if(rig.joints.begin(), rig.joints.end(),
+                                  [&](const RigJoint& joint) { return joint.name == name; });
+  return found == rig.joints.end() ? -1 : static_cast<int>(found - rig.joints.begin());
+}
+
 void check_matches(const BoneMatches& matches, const Rig& source, const Rig& target) {
   US_CHECK(ssize(matches.partner) == target.count() && ssize(matches.cost) == target.count(), "partners for ",
            matches.partner.size(), " bones; ", target.name, " has ", target.count());
@@ -182,7 +188,7 @@ LaidBody lay_on(const RiggedMotion& source, const RiggedMotion& target) {
   return laid;
 }
 
-BoneMatches match_bones(const LaidBody& laid, const RiggedMotion& source, const RiggedMotion& target) {
+Eigen::MatrixXd bone_costs(const LaidBody& laid, const RiggedMotion& source, const RiggedMotion& target) {
   const BoneMotions bones =
       bone_motions(target.rig, target.motion.poses[static_cast<size_t>(laid.target_frame)]);
   const ThinnedFrame thin = thinned(target.rig.surface, kLaidPoints, kLaidPoints, kLaidSeed);
@@ -199,14 +205,17 @@ BoneMatches match_bones(const LaidBody& laid, const RiggedMotion& source, const 
       cost(k, j) =
           1 - 2 * static_cast<double>(common(k, j)) /
                   std::max(1e-6, static_cast<double>(of_target.col(k).sum() + of_source.col(j).sum()));
+  return cost;
+}
+
+BoneMatches match_bones(const Eigen::MatrixXd& costs) {
   BoneMatches matches;
-  matches.partner = cheapest_pairs(cost);
-  for (Eigen::Index k = 0; k < common.rows(); ++k) {
+  matches.partner = cheapest_pairs(costs);
+  for (Eigen::Index k = 0; k < costs.rows(); ++k) {
     int& partner = matches.partner[static_cast<size_t>(k)];
-    if (partner >= 0 && cost(k, partner) > 1 - kFewInCommon) partner = -1;
-    matches.cost.push_back(partner < 0 ? 0 : static_cast<float>(cost(k, partner)));
+    if (partner >= 0 && costs(k, partner) > 1 - kFewInCommon) partner = -1;
+    matches.cost.push_back(partner < 0 ? 0 : static_cast<float>(costs(k, partner)));
   }
-  check_matches(matches, source.rig, target.rig);
   return matches;
 }
 

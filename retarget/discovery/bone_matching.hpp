@@ -1,8 +1,10 @@
 // Which bones of two bodies of a kind are each other's, and which of their poses are the same.
 #pragma once
 
+#include <string>
 #include <vector>
 
+#include "retarget/base/fields.hpp"
 #include "retarget/discovery/proportion_fit.hpp"
 
 namespace understudy {
@@ -12,6 +14,17 @@ struct BoneMatches {
   std::vector<int> partner;  ///< [J of the target] bone of the source; -1: none, it follows its neighbours
   std::vector<float> cost;  ///< [J] share of both bones that the other one is not; of those without partner 0
 };
+/// The number of the first bone of that name; -1: none has it.
+int bone_named(const Rig& rig, const std::string& name);
+/// A bone of a source and the one of a target that performs it, as somebody chose.
+struct ChosenMatch {
+  std::string bone, partner;  ///< names; partner empty: no bone of the target does
+};
+template <class V, class S>
+FieldsOf<S, ChosenMatch> fields(V& visit, S& match) {
+  visit("bone", match.bone);
+  visit("partner", match.partner);
+}
 /// Throws Error where a partner is no bone of the source, two bones have the same, or no bone has one.
 void check_matches(const BoneMatches& matches, const Rig& source, const Rig& target);
 
@@ -31,8 +44,11 @@ struct LaidBody {
 /// proportions. A mirrored body must be much more alike. Throws Error for bodies without a surface or a pose.
 LaidBody lay_on(const RiggedMotion& source, const RiggedMotion& target);
 
-/// Partners have most of their surfaces in common where the source is laid on the target.
-BoneMatches match_bones(const LaidBody& laid, const RiggedMotion& source, const RiggedMotion& target);
+/// [J of the target, J of the source] share of both bones' surfaces that the other one is not, where the
+/// source is laid on the target: 0 all the same .. 1 nothing in common.
+Eigen::MatrixXd bone_costs(const LaidBody& laid, const RiggedMotion& source, const RiggedMotion& target);
+/// The cheapest pairs of all, one to one; bones with too little in common are no partners.
+BoneMatches match_bones(const Eigen::MatrixXd& costs);
 
 /// [J] each bone's nearest one with a partner along the target's tree, itself first, then towards the root.
 std::vector<int> led_by(const Rig& target, const BoneMatches& matches);

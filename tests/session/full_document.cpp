@@ -133,7 +133,8 @@ SavedDocument full_document(const std::string& folder) {
   saved.document.scan_edits = scan_edits();
   saved.document.skeleton_edits = {DragEdit{7, RightAnkle, Vec3(0.01f, 0.02f, -0.03f), 9, true},
                                    SwapEdit{10, 20, SwapEdit::Limbs::Legs}};
-  saved.document.bones = {true, 12, rig_edits()};
+  saved.document.bones = {
+      true, 12, rig_edits(), {folder + "/an other.glb", {{"tail", "tail 2"}, {"horn", ""}}}};
   saved.document.takes = {take(folder), Take{}};
   saved.document.takes[1].target.path = folder + "/b.glb";
   saved.view = view();

@@ -5,11 +5,9 @@
 #include "retarget/base/error.hpp"
 #include "retarget/character/read_character.hpp"
 #include "retarget/character/rig_character.hpp"
-#include "retarget/formats/npz.hpp"
 #include "retarget/math/rotation.hpp"
 #include "retarget/pipeline/human_rest.hpp"
-#include "tests/retarget/discovery/bending_arm.hpp"
-#include "tests/session/studio_fixture.hpp"
+#include "tests/session/arm_studio.hpp"
 
 namespace understudy::app {
 namespace {
@@ -26,19 +24,8 @@ class UnsureExtractor final : public SkeletonExtractor {
   std::string name() const override { return "unsure"; }
 };
 
-class Bones : public StudioTest {
+class Bones : public ArmStudioTest {
  protected:
-  void SetUp() override {
-    StudioTest::SetUp();
-    NpyArray points;
-    for (int t = 0; t < understudy::kFrames; ++t) {
-      const Points frame = bent_arm(angle_at(t), static_cast<uint64_t>(t)).vertices;
-      points.shape = {understudy::kFrames, frame.rows(), 3};
-      points.values.insert(points.values.end(), frame.data(), frame.data() + frame.size());
-    }
-    write_npz(path("arm.npz"), {{"points", points}});
-  }
-
   /// Nobody is seen in an arm.
   StudioServices no_person() {
     StudioServices own = services();
@@ -48,25 +35,6 @@ class Bones : public StudioTest {
       return networks;
     };
     return own;
-  }
-
-  /// Opened as it is: metres, y up.
-  void open_arm(Studio& studio) {
-    studio.run("open", {path("arm.npz")});
-    studio.run("source.units", {"m"});
-    studio.run("source.up", {"y"});
-    studio.wait_idle();
-  }
-  void find(Studio& studio) {
-    open_arm(studio);
-    studio.run("bones.find");
-    studio.wait_idle();
-    ASSERT_TRUE(studio.session().bones.rig) << studio.session().bones.problem;
-  }
-  static const understudy::Rig& rig(const Studio& studio) { return studio.session().bones.rig->found.rig; }
-  template <class Command>
-  static std::string refusal(const Command& command) {
-    return failure_of(command);
   }
 };
 

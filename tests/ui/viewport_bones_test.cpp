@@ -148,5 +148,25 @@ TEST_F(BonesScene, PartsArePaintedAsTheyComeWhereTheScanStands) {
   EXPECT_NE(Vec3(painted.clouds[0].colors->row(0)), Vec3(painted.clouds[0].colors->row(1)));
 }
 
+TEST_F(BonesScene, TheSecondBodyStandsBesideInTheColoursOfWhatItPerforms) {
+  auto body = std::make_shared<RiggedMotion>(session.bones.rig->found);
+  session.second.performed = body;
+  session.second.matches = {{1, 0}, {0, 0}};  // exchanged
+  session.second.place = Vec3(3, 0, 0);
+  const render::Scene plain = scene();
+  ASSERT_EQ(plain.meshes.size(), 1u);
+  EXPECT_EQ(plain.meshes[0].colors->rows(), 0);
+  EXPECT_NEAR((*plain.meshes[0].vertices)(0, 0), stage.mesh.vertices(0, 0) + 4, 1e-4f) << "in frame 10";
+  EXPECT_EQ(plain.skeletons.size(), 3u) << "person, found bones, the second's";
+  session.view.bone_surface = app::BoneSurface::Over;
+  const render::Scene painted = scene();
+  ASSERT_EQ(painted.meshes.size(), 2u);
+  const Points &first = *painted.meshes[0].colors, &second = *painted.meshes[1].colors;
+  for (Eigen::Index v = 0; v < first.rows(); ++v)
+    EXPECT_NE(Vec3(first.row(v)), Vec3(second.row(v))) << "the same surface, with exchanged bones";
+  session.view.bone_surface = app::BoneSurface::Beside;
+  EXPECT_GT((*scene().meshes[1].vertices)(0, 0), (*plain.meshes[0].vertices)(0, 0) + 0.5f);
+}
+
 }  // namespace
 }  // namespace understudy::ui

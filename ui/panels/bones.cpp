@@ -5,6 +5,8 @@
 // bones.merge, bones.split, bones.root, bones.x, .y, .z, bones.turn_tool, bones.turn_x, .turn_y, .turn_z;
 // bones.paint_tool, bones.brush_radius, .brush_strength, .brush_mode; bones.strength, bones.smooth,
 // bones.trim, bones.fit; bones.near.K, bones.name_as_joints; bones.export, bones.drop.
+// The second body, in second_body.cpp: bones.second; bones.perform, bones.perform.work (.cancel),
+// bones.match.K (.I, its choices), bones.perform_export, bones.perform_drop.
 #include <algorithm>
 #include <array>
 
@@ -12,6 +14,7 @@
 #include "retarget/base/text.hpp"
 #include "ui/panels/panels.hpp"
 #include "ui/panels/rows.hpp"
+#include "ui/panels/second_body.hpp"
 #include "ui/widgets/lists.hpp"
 
 namespace understudy::ui {
@@ -322,6 +325,7 @@ void draw_bones(const app::Session& session, PanelContext& context) {
   draw_one(d);
   draw_motion(d);
   draw_near(d);
+  draw_second_body(session, context);
   ask_button(context, {"bones.drop", "Drop these bones", "Can be undone"});
 }
 

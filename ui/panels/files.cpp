@@ -30,6 +30,9 @@ constexpr FileDialog kDialogs[] = {
     {"source_times", "source.times", "Times of the scans", "Use", FileKind::Times},
     {"source_markers", "source.markers", "Markers of the scans", "Use", FileKind::Times},
     {"export_bones", "bones.export", "Export the found rig", "Export", FileKind::Any, true},
+    {"second_body", "bones.perform", "A second body: a rig, a scan or scans", "Use", FileKind::Source},
+    {"export_second_body", "bones.perform_export", "Export the second body's performance", "Export",
+     FileKind::Any, true},
     {"open_target", "target.add", "Add target", "Add", FileKind::Target},
     {"replace_target", "target.replace", "Replace target", "Replace", FileKind::Target},
     {"open_document", "document.open", "Open document", "Open", FileKind::Document},
@@ -81,6 +84,10 @@ std::string bones_name(const app::Session& session) {
   return fs::path(session.source.name).stem().string() + " rig.glb";
 }
 
+std::string second_body_name(const app::Session& session) {
+  return fs::path(session.document.bones.second.path).stem().string() + " performs.glb";
+}
+
 }  // namespace
 
 std::optional<FilePurpose> purpose_of(const std::string& dialog) {
@@ -104,10 +111,11 @@ void choose_file(const app::Session& session, FilesState& state, FilePurpose pur
   if (purpose == FilePurpose::Relocate || purpose == FilePurpose::BodyMotion)
     state.first = name, request.title += file_name(name);
   if (dialog.save) {
-    const std::string usual = purpose == FilePurpose::Export        ? ""
-                              : is_of_study(purpose)                ? study_name(session, purpose)
-                              : purpose == FilePurpose::ExportBones ? bones_name(session)
-                                                                    : document_name(session);
+    const std::string usual = purpose == FilePurpose::Export             ? ""
+                              : is_of_study(purpose)                     ? study_name(session, purpose)
+                              : purpose == FilePurpose::ExportBones      ? bones_name(session)
+                              : purpose == FilePurpose::ExportSecondBody ? second_body_name(session)
+                                                                         : document_name(session);
     const fs::path proposed = name.empty() ? usual : name;
     request.name = proposed.filename().string();
     request.folder = proposed.parent_path().string();

@@ -19,6 +19,8 @@ enum class FilePurpose {
   SourceTimes,
   SourceMarkers,
   ExportBones,
+  SecondBody,
+  ExportSecondBody,
   Target,
   ReplaceTarget,
   Document,

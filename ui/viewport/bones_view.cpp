@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "app/session/follow.hpp"
 #include "render/colors.hpp"
 #include "retarget/base/index.hpp"
 #include "retarget/base/text.hpp"
@@ -17,9 +18,9 @@ using app::Session;
 const Vec3 kFoundColor(0.0f, 0.62f, 0.45f);  // Okabe and Ito's green: no side of a person has it
 const Vec3 kSelectedColor(0.98f, 0.80f, 0.15f);
 const Vec3 kUnselected(0.62f, 0.64f, 0.67f);  // of the surface, where one bone is chosen
-constexpr float kAdult = 2;                   // diagonal of an adult's box, metres
-constexpr float kBesideJoints = 0.6f;         // of the thickness, where a person's joints are shown too
-constexpr float kGapBeside = 1.2f;            // widths of the body
+const Vec3 kPlain(0.77f, 0.74f, 0.71f);
+constexpr float kAdult = 2;            // diagonal of an adult's box, metres
+constexpr float kBesideJoints = 0.6f;  // of the thickness, where a person's joints are shown too
 
 struct Box3 {
   Vec3 low = Vec3::Zero(), high = Vec3::Zero();
@@ -35,14 +36,6 @@ Box3 box_of(const Points& points) {
 Vec3 color_of(int joint) {
   const ImVec4 of = bone_color(joint);
   return {of.x, of.y, of.z};
-}
-
-/// Each bone's colour; where one is chosen, its own alone.
-Points surface_colors(const RowMatrix& weights, int selected) {
-  if (selected < 0 || selected >= weights.cols()) return render::weight_colors(weights);
-  const Eigen::RowVector3f own = kSelectedColor.transpose(), other = kUnselected.transpose();
-  const Eigen::VectorXf share = weights.col(selected);
-  return share * own + (Eigen::VectorXf::Ones(share.size()) - share) * other;
 }
 
 Points part_colors(const std::vector<int>& bone_of) {
@@ -82,30 +75,10 @@ float size_of(const understudy::Rig& rig) {
   return rig.count() < kFew ? diagonal(rig.surface.vertices) : kBeyondJoints * diagonal(rig.rest_joints());
 }
 
-void add_surface(const Mesh& mesh, const BonesMemory& memory, render::Scene& scene) {
-  if (mesh.is_cloud()) {
-    render::PointsView points;
-    points.positions = memory.vertices, points.colors = memory.colors;
-    if (memory.spacing > 0) points.radius = 1.1f * memory.spacing;
-    return scene.clouds.push_back(std::move(points));
-  }
-  render::MeshView view;
-  view.vertices = memory.vertices, view.normals = memory.normals, view.colors = memory.colors;
-  view.faces = memory.faces;
-  scene.meshes.push_back(std::move(view));
-}
-
 /// What is painted is seen.
 BoneSurface surface_in(const Session& session, const PaneContent& pane) {
   const BoneSurface chosen = session.view.bone_surface;
   return chosen == BoneSurface::Off && paints_found_bones(session, pane) ? BoneSurface::Over : chosen;
-}
-
-/// Beside the scan, by more than its width.
-Vec3 beside(const Session& session, const Points& rest) {
-  if (session.view.bone_surface != BoneSurface::Beside) return Vec3::Zero();
-  const Box3 box = box_of(rest);
-  return {kGapBeside * std::max(box.high.x() - box.low.x(), 0.5f * (box.high.z() - box.low.z())), 0, 0};
 }
 
 /// Of the found rig in a frame of the source; null where it has no such frame.
@@ -146,7 +119,7 @@ void add_painted(const BonesInput& in, BonesMemory& memory, render::Scene& scene
   if (memory.weights.rows() == 0 || memory.preview.skin != in.preview.skin)
     memory.weights = skin.dense(found.count()), memory.colors = {};
   paint_surface(in, memory);
-  const Vec3 offset = in.aside + beside(session, found.surface.vertices);
+  const Vec3 offset = in.aside + app::painted_place(session);
   if (memory.frame != frame || memory.offset != offset || memory.preview.pose != in.preview.pose ||
       memory.preview.skin != in.preview.skin) {
     memory.frame = frame, memory.offset = offset, memory.preview = in.preview;
@@ -195,6 +168,27 @@ float pixels_off(const ImVec2& at, const ImVec2& a, const ImVec2& b) {
 
 }  // namespace
 
+Points surface_colors(const RowMatrix& weights, int selected) {
+  if (selected < 0 || selected >= weights.cols()) return render::weight_colors(weights);
+  const Eigen::RowVector3f own = kSelectedColor.transpose(), other = kUnselected.transpose();
+  const Eigen::VectorXf share = weights.col(selected);
+  return share * own + (Eigen::VectorXf::Ones(share.size()) - share) * other;
+}
+
+void add_surface(const Mesh& mesh, const BonesMemory& memory, render::Scene& scene) {
+  if (mesh.is_cloud()) {
+    render::PointsView points;
+    points.positions = memory.vertices, points.colors = memory.colors;
+    points.color = kPlain;
+    if (memory.spacing > 0) points.radius = 1.1f * memory.spacing;
+    return scene.clouds.push_back(std::move(points));
+  }
+  render::MeshView view;
+  view.vertices = memory.vertices, view.normals = memory.normals, view.colors = memory.colors;
+  view.faces = memory.faces, view.color = kPlain;
+  scene.meshes.push_back(std::move(view));
+}
+
 bool hides_person(const Session& session) {
   return session.source.no_person && session.document.bones.wanted;
 }
@@ -212,8 +206,21 @@ std::optional<PosedBones> posed_bones(const Session& session, const PaneContent&
   if (!rig || !pane.source || !session.view.source.bones) return std::nullopt;
   const RigPose* const pose = pose_in(*rig, frame, preview);
   if (pose == nullptr) return std::nullopt;
-  const understudy::Rig& found = rig->found.rig;
-  const BoneMotions motions = bone_motions(found, *pose);
+  return posed_bones(rig->found.rig, *pose);
+}
+
+void add_bone_lines(const PosedBones& bones, const understudy::Rig& rig, const BonesLook& look,
+                    render::Scene& scene) {
+  const float size = size_of(rig);
+  render::SkeletonView view = skeleton_of(bones.places, bones.parents, size);
+  view.thickness *= look.thickness, view.x_ray = look.x_ray;
+  scene.skeletons.push_back(view);
+  if (look.selected < 0 || look.selected >= bones.joints) return;
+  scene.skeletons.push_back(selected_bone(bones, look.selected, size));
+}
+
+PosedBones posed_bones(const understudy::Rig& found, const RigPose& pose) {
+  const BoneMotions motions = bone_motions(found, pose);
   const std::vector<BoneTip> tips = bone_tips(found);
   PosedBones bones;
   bones.joints = found.count();
@@ -235,13 +242,9 @@ void add_bones(const BonesInput& in, BonesMemory& memory, render::Scene& scene) 
   auto bones = posed_bones(session, in.pane, in.pictures.frame, in.preview);
   if (!bones) return;
   bones->places.rowwise() += in.aside.transpose();
-  const float size = size_of(session.bones.rig->found.rig);
-  render::SkeletonView view = skeleton_of(bones->places, bones->parents, size);
-  if (session.view.source.skeleton && !hides_person(session)) view.thickness *= kBesideJoints;
-  view.x_ray = session.view.source.x_ray;
-  scene.skeletons.push_back(view);
-  if (session.bones.selected < 0 || session.bones.selected >= bones->joints) return;
-  scene.skeletons.push_back(selected_bone(*bones, session.bones.selected, size));
+  BonesLook look{session.bones.selected, session.view.source.x_ray};
+  if (session.view.source.skeleton && !hides_person(session)) look.thickness = kBesideJoints;
+  add_bone_lines(*bones, session.bones.rig->found.rig, look, scene);
 }
 
 int bone_at(const PaneView& view, const PosedBones& bones, const ImVec2& at, float reach) {

@@ -40,6 +40,7 @@ struct PosedBones {
   std::vector<int> parents;  ///< as many
   int joints = 0;            ///< J
 };
+PosedBones posed_bones(const understudy::Rig& rig, const RigPose& pose);
 /// None where none is found, hidden, or the frame is not one of the rig's.
 std::optional<PosedBones> posed_bones(const app::Session& session, const PaneContent& pane, int frame,
                                       const FoundPreview& preview = {});
@@ -48,6 +49,19 @@ std::optional<PosedBones> posed_bones(const app::Session& session, const PaneCon
 bool hides_person(const app::Session& session);
 /// Whether what was found, or is found so far, is drawn in the scan's place.
 bool bones_hide_scan(const app::Session& session, const PaneContent& pane, int frame);
+
+/// A body's surface, of which all but the pose is kept in the memory.
+void add_surface(const Mesh& mesh, const BonesMemory& memory, render::Scene& scene);
+/// Each bone's colour, mixed by weights [V, J]; where one is chosen, its own alone. [V, 3]
+Points surface_colors(const RowMatrix& weights, int selected);
+struct BonesLook {
+  int selected = -1;  ///< bright; -1: none
+  bool x_ray = true;
+  float thickness = 1;  ///< times the usual one
+};
+/// The bones of such a rig, where they are posed.
+void add_bone_lines(const PosedBones& bones, const understudy::Rig& rig, const BonesLook& look,
+                    render::Scene& scene);
 
 /// What bones are drawn from; all of it is shifted by `aside`.
 struct BonesInput {

@@ -219,6 +219,7 @@ void Builder::add_scan() {
   if (joints != nullptr && !hides_person(session_)) add_skeleton(*joints, layers, 0);
   add_bones({session_, in_.pane, in_.pictures, in_.preview.found, aside_of(0)}, memory_.bones, out_.scene);
   explain_painted_bone();
+  add_second_body(session_, in_.pictures.frame, aside_of(0), memory_.second, out_.scene);
 }
 
 void Builder::add_take(size_t i) {

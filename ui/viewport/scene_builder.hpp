@@ -10,6 +10,7 @@
 #include "render/scene.hpp"
 #include "ui/viewport/bones_view.hpp"
 #include "ui/viewport/panes.hpp"
+#include "ui/viewport/second_body_view.hpp"
 #include "ui/viewport/surface_values.hpp"
 #include "ui/viewport/target_look.hpp"
 
@@ -77,7 +78,7 @@ struct SceneMemory {
   KeptValues<std::pair<MovedLayer, int>, MovedPoints> moved;
   ShownScan scan;
   KeptValues<int, ShownScan> ghosts;  ///< by their number
-  BonesMemory bones;
+  BonesMemory bones, second;          ///< the found body, and the one that performs what it does
 };
 
 struct SceneInput {

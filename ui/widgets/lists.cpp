@@ -141,9 +141,13 @@ void Table::cell(const std::string& text) {
   write(columns_[std::min<int>(column_++, columns_.size() - 1)], text);
 }
 
-void Table::whole_cell(const std::string& text) {
+void Table::next_cell() {
   if (column_ != ImGui::TableGetColumnIndex()) ImGui::TableSetColumnIndex(column_);
   ++column_;
+}
+
+void Table::whole_cell(const std::string& text) {
+  next_cell();
   paragraph(text);
   ui_.mark(name_ + "." + std::to_string(row_) + ".text");
 }

@@ -40,6 +40,8 @@ class Table {
   /// The next cell of the row. Text is cut to fit; numbers align to the right.
   void cell(const std::string& text);
   void cell(double value);
+  /// The next cell, for what is drawn next.
+  void next_cell();
   /// The next cell, its text whole: in as many lines as it needs. Marked NAME.ROW.text.
   void whole_cell(const std::string& text);
 

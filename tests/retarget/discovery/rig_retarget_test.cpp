@@ -55,14 +55,14 @@ RiggedMotion* TwoLamps::target;
 LaidBody* TwoLamps::laid;
 
 TEST_F(TwoLamps, BonesAreMatchedOneToOneByWhereTheyLie) {
-  const BoneMatches matches = match_bones(*laid, *source, *target);
+  const BoneMatches matches = match_bones(bone_costs(*laid, *source, *target));
   for (int k = 0; k < target->rig.count(); ++k) EXPECT_EQ(matches.partner[static_cast<size_t>(k)], k);
   EXPECT_LT(*std::max_element(matches.cost.begin(), matches.cost.end()), 0.6f);
   EXPECT_FALSE(laid->mirrored());
 }
 
 TEST_F(TwoLamps, TheSecondDoesWhatTheFirstDid) {
-  const BoneMatches matches = match_bones(*laid, *source, *target);
+  const BoneMatches matches = match_bones(bone_costs(*laid, *source, *target));
   const RiggedMotion performed = performed_by(*source, *target, *laid, matches);
   ASSERT_EQ(performed.motion.poses.size(), static_cast<size_t>(kClip));
   const double error = error_pct(performed, *source, target->rig);
@@ -71,7 +71,7 @@ TEST_F(TwoLamps, TheSecondDoesWhatTheFirstDid) {
 }
 
 TEST_F(TwoLamps, ABoneWithoutAPartnerGoesWithItsNeighbours) {
-  BoneMatches matches = match_bones(*laid, *source, *target);
+  BoneMatches matches = match_bones(bone_costs(*laid, *source, *target));
   const int last = target->rig.count() - 1;
   matches.partner.back() = -1;
   const RiggedMotion performed = performed_by(*source, *target, *laid, matches);

@@ -16,6 +16,7 @@
 #include "app/studio/facts.hpp"
 #include "retarget/base/error.hpp"
 #include "retarget/base/text.hpp"
+#include "retarget/formats/mesh_reader.hpp"
 #include "retarget/formats/npz.hpp"
 #include "tests/app/sample_files.hpp"
 #include "tests/retarget/scene/made_scene.hpp"
@@ -53,6 +54,12 @@ std::string x_key(render::Key key) {
   const auto found = kOthers.find(name);
   if (found != kOthers.end()) return found->second;
   return name.size() == 1 ? lower_case(name) : name;
+}
+
+/// One scan of another animal: the sample's, smaller and on longer legs for its size.
+void write_pony(const std::string& path) {
+  const Mesh animal = read_mesh(US_SOURCE_DIR "/assets/samples/animal/frame_00010.ply");
+  write_cloud(path, animal.vertices * Vec3(0.6f, 0.75f, 0.6f).asDiagonal());
 }
 
 bool is_number(const std::string& text) {
@@ -330,6 +337,7 @@ class Path : public StudioWindow, public testing::WithParamInterface<std::string
       fs::create_directories(scratch.path("motions"));
       write_walk(scratch.path("motions/walk.npz")), write_walk(scratch.path("motions/run.npz"), {"walk", 48});
     }
+    if (word == "out/pony.ply") write_pony(scratch.path("pony.ply"));
     if (word == "out/gaps") copy_with_a_gap(scratch.path("gaps"));
     if (starts_with(word, "samples/")) return std::string(US_SOURCE_DIR "/assets/") + word;
     return starts_with(word, "out/") ? scratch.path(word.substr(4)) : word;
