@@ -12,7 +12,8 @@
 namespace understudy {
 namespace {
 
-constexpr float kUnknown = 0.2f;    // confidence below which a joint that is not seen is not known either
+// Confidence below which a joint that is not seen is not known either; less where its mirror image is seen.
+constexpr float kUnknown = 0.2f, kUnknownAlone = 0.12f;
 constexpr float kNotice_s = 0.15f;  // time constants: in which a joint becomes lost or seen,
 constexpr float kFade_s = 0.15f;    // in which it is then replaced,
 constexpr float kGround_s = 0.6f;   // in which the floor follows who rises
@@ -98,7 +99,8 @@ void append_sentence(std::string& text, const std::string& sentence) {
 
 bool is_lost(const Extraction& seen, int joint) {
   const float hidden = std::min(1.0f, (1 - seen.visibility[joint]) / (1 - kSeen));
-  return seen.confidence[joint] < hidden * kUnknown;
+  const bool alone = seen.visibility[kMirror[joint]] >= kSeen;
+  return seen.confidence[joint] < hidden * (alone ? kUnknownAlone : kUnknown);
 }
 
 bool shows_bone(const Extraction& seen, int joint) {

@@ -72,6 +72,14 @@ TEST(UnseenLimbs, AJointIsLostWhereItIsNeitherSeenNorKnown) {
   EXPECT_FALSE(lost(1, 0));         // an extractor that knows no visibility
 }
 
+TEST(UnseenLimbs, AJointWhoseMirrorImageIsSeenIsKnownLonger) {
+  Extraction seen;
+  seen.visibility[LeftWrist] = 0, seen.confidence[LeftWrist] = 0.15f;
+  EXPECT_FALSE(is_lost(seen, LeftWrist));
+  seen.visibility[RightWrist] = 0.4f;
+  EXPECT_TRUE(is_lost(seen, LeftWrist));
+}
+
 TEST(UnseenLimbs, LegsThatNobodySawStandUnderThePelvis) {
   for (const bool rotations : {true, false}) {
     UnseenLimbs limbs;
