@@ -5,6 +5,7 @@
 #include "app/run/rig_performance.hpp"
 #include "app/session/command_sets.hpp"
 #include "retarget/base/text.hpp"
+#include "retarget/formats/file_formats.hpp"
 #include "retarget/formats/scan_source.hpp"
 #include "retarget/motion/read_motion.hpp"
 
@@ -16,9 +17,11 @@ void check_body(const std::string& path) {
   std::error_code failed;
   US_CHECK(std::filesystem::exists(path, failed), path, ": there is no such file or folder");
   if (is_rig_file(path)) return;
-  US_CHECK(!is_motion_file(path), path, ": is a motion, not a body that could perform");
-  const std::string problem = failure_of([&] { ScanSource{path}; });
-  US_CHECK(problem.empty(), path, ": is neither a rig (.glb, .gltf), a scan nor a folder of scans");
+  const bool is_folder = std::filesystem::is_directory(path, failed);
+  US_CHECK(is_folder || !is_motion_file(path), path, ": is a motion, not a body that could perform");
+  US_CHECK(is_folder || can_be(path, kScanFrame | kScanSequence), path,
+           ": is neither a rig (.glb, .gltf), nor a scan, nor a folder of scans");
+  ScanSource{path};  // throws at once when there is no frame
 }
 
 void choose_second(Call& c) {

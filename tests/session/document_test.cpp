@@ -106,6 +106,8 @@ const Changes& document_changes() {
       CHANGE(bones.most = 7),
       CHANGE(bones.edits.pop_back()),
       CHANGE(bones.edits[0] = FitAgain{}),
+      CHANGE(bones.second.path = "other.glb"),
+      CHANGE(bones.second.matches.push_back({"arm", "leg"})),
       CHANGE(takes.pop_back()),
       TAKE(name = "other"),
       TAKE(person = "7"),
@@ -202,7 +204,8 @@ const Changes& document_changes() {
 /// Does not compile once a member is added: then it belongs into fields() and the changes above, too.
 [[maybe_unused]] void all_members_are_known() {
   [[maybe_unused]] const auto& [source, truth, scan, skeleton, bones, takes] = Document();
-  [[maybe_unused]] const auto& [wanted, most, bone_edits] = OwnBones();
+  [[maybe_unused]] const auto& [wanted, most, bone_edits, second] = OwnBones();
+  [[maybe_unused]] const auto& [second_path, matches] = SecondBody();
   [[maybe_unused]] const auto& [path, motion, betas, fps, import, follow, as_scan, clip, source_bones, quiet,
                                 with_truth, person, times, complete, markers, made, people, recipe, edits] =
       SourceOptions();
