@@ -106,7 +106,7 @@ const Changes& document_changes() {
       CHANGE(bones.most = 7),
       CHANGE(bones.edits.pop_back()),
       CHANGE(bones.edits[0] = FitAgain{}),
-      CHANGE(bones.second.path = "other.glb"),
+      CHANGE(bones.second.path += "x"),
       CHANGE(bones.second.matches.push_back({"arm", "leg"})),
       CHANGE(takes.pop_back()),
       TAKE(name = "other"),
