@@ -13,7 +13,7 @@ namespace understudy {
 
 constexpr float kSeen = 0.5f;  ///< visibility from which a joint counts as seen
 
-/// Whether a joint is neither seen nor known: the scan does not show it, and the extractor expects to be off by
+/// Whether a joint is neither seen nor known: the scan does not show it, and the extractor expects to err by
 /// more than 12 cm, 16 where the scan shows its mirror image; of what may be seen by more, up to any error at
 /// visibility 1. What hides behind the body for a moment is known, what lies outside the picture is not.
 bool is_lost(const Extraction& seen, int joint);
