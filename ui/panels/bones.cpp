@@ -181,10 +181,10 @@ void draw_all(const BonesDrawing& d) {
               "What was found, painted by bone, in place of the scan or beside it", "view.bone_surface"},
              {"Off", "Over", "Beside"}, {app::kBoneSurfaceNames.begin(), app::kBoneSurfaceNames.end()},
              app::kBoneSurfaceNames[static_cast<size_t>(d.session.view.bone_surface)]);
-  draw_table(d);
   ask_button(d.context, {"bones.export", "Export\u2026",
                          "As .glb with bones, skin and animation; its motion alone as .bvh",
                          "dialog.open export_bones"});
+  draw_table(d);
 }
 
 void draw_place(const BonesDrawing& d, const RigJoint& joint) {
