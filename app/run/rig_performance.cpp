@@ -121,8 +121,7 @@ BoneMatches matches_of(const LaidOther& other, const understudy::Rig& first,
   for (const ChosenMatch& match : chosen) {
     const int j = bone_named(first, match.bone), k = bone_named(other.body.rig, match.partner);
     if (j < 0 || (k < 0 && !match.partner.empty())) continue;
-    const auto now = std::find(matches.partner.begin(), matches.partner.end(), j);
-    if (now != matches.partner.end()) part(static_cast<size_t>(now - matches.partner.begin()));
+    if (const int now = performer_of(matches, j); now >= 0) part(static_cast<size_t>(now));
     if (k < 0) continue;
     matches.partner[static_cast<size_t>(k)] = j;
     matches.cost[static_cast<size_t>(k)] = static_cast<float>(other.costs(k, j));

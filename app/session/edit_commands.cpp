@@ -595,7 +595,7 @@ void keep(const Call& c, const WeightRows& changed) {
 void paint(Call& c) {
   const RowMatrix& weights = painted(c);
   Brush brush = c.session.brush;
-  US_CHECK(brush.mode == Brush::Mode::Smooth || c.session.selected_joint >= 0,
+  US_CHECK(brush.mode == BrushMode::Smooth || c.session.selected_joint >= 0,
            "choose the joint to paint first");
   brush.joint = std::max(0, c.session.selected_joint);
   const PaintSurface surface{c.take_state().target->mesh.vertices, c.studio.neighbours(c.take_number())};

@@ -140,6 +140,11 @@ ProportionFit fitted(const Look& look, const Rig& source, const SkinWeights& ski
 
 }  // namespace
 
+int performer_of(const BoneMatches& matches, int bone) {
+  const auto at = std::find(matches.partner.begin(), matches.partner.end(), bone);
+  return bone < 0 || at == matches.partner.end() ? -1 : static_cast<int>(at - matches.partner.begin());
+}
+
 int bone_named(const Rig& rig, const std::string& name) {
   const auto found = std::find_if(rig.joints.begin(), rig.joints.end(),
                                   [&](const RigJoint& joint) { return joint.name == name; });

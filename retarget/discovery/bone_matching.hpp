@@ -14,6 +14,8 @@ struct BoneMatches {
   std::vector<int> partner;  ///< [J of the target] bone of the source; -1: none, it follows its neighbours
   std::vector<float> cost;  ///< [J] share of both bones that the other one is not; of those without partner 0
 };
+/// Which of the target's bones performs a bone of the source; -1: none does.
+int performer_of(const BoneMatches& matches, int bone);
 /// The number of the first bone of that name; -1: none has it.
 int bone_named(const Rig& rig, const std::string& name);
 /// A bone of a source and the one of a target that performs it, as somebody chose.

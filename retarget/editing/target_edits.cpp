@@ -163,11 +163,11 @@ Row painted(const RowMatrix& weights, const Neighbours& neighbours, int v, const
   const Row row = weights.row(v);
   const float now = row[brush.joint];
   switch (brush.mode) {
-    case Brush::Mode::Add:
+    case BrushMode::Add:
       return with_weight(row, brush.joint, now + amount * (1 - now));
-    case Brush::Mode::Subtract:
+    case BrushMode::Subtract:
       return now > 0 ? with_weight(row, brush.joint, now * (1 - amount)) : row;
-    case Brush::Mode::Smooth:
+    case BrushMode::Smooth:
       break;
   }
   return normalised(row + amount * (neighbours_mean(weights, neighbours, v) - row), row);

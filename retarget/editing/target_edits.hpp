@@ -84,11 +84,10 @@ struct Neighbours {
 };
 
 struct Brush {
-  using Mode = BrushMode;
   int joint = 0;  ///< the one painted; Smooth smooths all
   float radius_m = 0.05f;
   float strength = 0.5f;  ///< 0..1, of one dab at its centre
-  Mode mode = Mode::Add;
+  BrushMode mode = BrushMode::Add;
 };
 
 /// A mesh to paint on; keeps references.

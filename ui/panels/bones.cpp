@@ -109,12 +109,8 @@ bool draw_work(const BonesDrawing& d) {
   }
   if (bones.job == 0) return false;
   draw_stages(d);
-  ProgressOptions options;
-  options.fraction = bones.share, options.left = bones.stage == "Fit" ? "Fitting" : "Finding bones";
-  for (const app::JobView& job : d.session.jobs)
-    if (job.id == bones.job)
-      options.right = time_left(job.seconds_left), options.cancellable = job.cancellable;
-  if (progress(d.ui(), "bones.work", options)) d.context.ask("job.cancel", {std::to_string(bones.job)});
+  job_progress(d.session, d.context, "bones.work", bones.job, bones.share,
+               bones.stage == "Fit" ? "Fitting" : "Finding bones");
   if (bones.so_far)
     hint(d.ui(), std::to_string(bones.so_far->tree.size()) + " parts so far, painted in the view.");
   return true;

@@ -80,6 +80,15 @@ std::optional<double> typed_number_row(Ui& ui, const Control& control, double va
   return typed ? parse_number(*typed) : std::nullopt;
 }
 
+void job_progress(const app::Session& session, PanelContext& context, const std::string& name, int64_t job,
+                  float fraction, const std::string& words) {
+  ProgressOptions options;
+  options.fraction = fraction, options.left = words;
+  for (const app::JobView& view : session.jobs)
+    if (view.id == job) options.right = time_left(view.seconds_left), options.cancellable = view.cancellable;
+  if (progress(context.ui, name, options)) context.ask("job.cancel", {std::to_string(job)});
+}
+
 void tool_button(const app::Session& session, PanelContext& context, const Control& control, app::Tool tool) {
   const std::string word = app::kToolNames[static_cast<size_t>(tool)];
   const std::string label =

@@ -22,15 +22,10 @@ constexpr std::array<std::pair<const char*, const char*>, 6> kWork = {
 
 void draw_performing(const app::Session& session, PanelContext& context) {
   const app::SecondBodyState& second = session.second;
-  ProgressOptions options;
-  options.fraction = second.share;
+  std::string doing;
   for (const auto& [name, words] : kWork)
-    if (second.stage == name) options.left = words;
-  for (const app::JobView& job : session.jobs)
-    if (job.id == second.job)
-      options.right = time_left(job.seconds_left), options.cancellable = job.cancellable;
-  if (progress(context.ui, "bones.perform.work", options))
-    context.ask("job.cancel", {std::to_string(second.job)});
+    if (second.stage == name) doing = words;
+  job_progress(session, context, "bones.perform.work", second.job, second.share, doing);
 }
 
 /// "88 % of the first, mirrored".
@@ -65,9 +60,7 @@ class MatchTable {
 
  private:
   void draw_row(Table& table, const std::string& bone, size_t j) {
-    const auto& partners = session_.second.matches.partner;
-    const auto at = std::find(partners.begin(), partners.end(), static_cast<int>(j));
-    const int k = at == partners.end() ? -1 : static_cast<int>(at - partners.begin());
+    const int k = performer_of(session_.second.matches, static_cast<int>(j));
     table.row(false, false);
     table.next_cell();
     ImGui::AlignTextToFramePadding();

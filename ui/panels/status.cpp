@@ -14,12 +14,9 @@ void draw_job(const app::Session& session, PanelContext& context, float width) {
   Ui& ui = context.ui;
   const app::JobView& job = session.jobs.front();
   ImGui::BeginChild("##job", {width, ui.px(kStatusHeight - 6)});
-  ProgressOptions options;
-  options.fraction = job.progress, options.left = job.name;
-  if (session.jobs.size() > 1) options.left += " (+" + std::to_string(session.jobs.size() - 1) + ")";
-  options.right = time_left(job.seconds_left);
-  options.cancellable = job.cancellable;
-  if (progress(ui, "status.job", options)) context.ask("job.cancel", {std::to_string(job.id)});
+  std::string words = job.name;
+  if (session.jobs.size() > 1) words += " (+" + std::to_string(session.jobs.size() - 1) + ")";
+  job_progress(session, context, "status.job", job.id, job.progress, words);
   ImGui::EndChild();
 }
 
@@ -44,11 +41,8 @@ void draw_more_jobs(const app::Session& session, PanelContext& context) {
   ImGui::SetNextWindowPos({above.x, above.y - ui.px(4)}, ImGuiCond_Always, {0, 1});
   ImGui::SetNextWindowSize({ui.px(320), 0});
   if (!ImGui::BeginPopup("jobs")) return;
-  for (const app::JobView& job : session.jobs) {
-    const ProgressOptions options{job.progress, job.name, time_left(job.seconds_left), job.cancellable};
-    if (progress(ui, "status.job." + std::to_string(job.id), options))
-      context.ask("job.cancel", {std::to_string(job.id)});
-  }
+  for (const app::JobView& job : session.jobs)
+    job_progress(session, context, "status.job." + std::to_string(job.id), job.id, job.progress, job.name);
   ImGui::EndPopup();
 }
 

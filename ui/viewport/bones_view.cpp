@@ -123,9 +123,7 @@ void add_painted(const BonesInput& in, BonesMemory& memory, render::Scene& scene
   if (memory.frame != frame || memory.offset != offset || memory.preview.pose != in.preview.pose ||
       memory.preview.skin != in.preview.skin) {
     memory.frame = frame, memory.offset = offset, memory.preview = in.preview;
-    const Points posed = skinned(found.surface.vertices, skin, bone_motions(found, *pose));
-    memory.vertices = Points(posed.rowwise() + offset.transpose());
-    if (!found.surface.is_cloud()) memory.normals = vertex_normals(posed, found.surface.faces);
+    place_surface(found, skin, *pose, memory);
   }
   add_surface(found.surface, memory, scene);
 }
@@ -173,6 +171,13 @@ Points surface_colors(const RowMatrix& weights, int selected) {
   const Eigen::RowVector3f own = kSelectedColor.transpose(), other = kUnselected.transpose();
   const Eigen::VectorXf share = weights.col(selected);
   return share * own + (Eigen::VectorXf::Ones(share.size()) - share) * other;
+}
+
+void place_surface(const understudy::Rig& rig, const SkinWeights& skin, const RigPose& pose,
+                   BonesMemory& memory) {
+  const Points posed = skinned(rig.surface.vertices, skin, bone_motions(rig, pose));
+  memory.vertices = Points(posed.rowwise() + memory.offset.transpose());
+  if (!rig.surface.is_cloud()) memory.normals = vertex_normals(posed, rig.surface.faces);
 }
 
 void add_surface(const Mesh& mesh, const BonesMemory& memory, render::Scene& scene) {

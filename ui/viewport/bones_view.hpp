@@ -50,6 +50,9 @@ bool hides_person(const app::Session& session);
 /// Whether what was found, or is found so far, is drawn in the scan's place.
 bool bones_hide_scan(const app::Session& session, const PaneContent& pane, int frame);
 
+/// Where a body's surface is in a pose, shifted by the memory's offset.
+void place_surface(const understudy::Rig& rig, const SkinWeights& skin, const RigPose& pose,
+                   BonesMemory& memory);
 /// A body's surface, of which all but the pose is kept in the memory.
 void add_surface(const Mesh& mesh, const BonesMemory& memory, render::Scene& scene);
 /// Each bone's colour, mixed by weights [V, J]; where one is chosen, its own alone. [V, 3]

@@ -1,7 +1,5 @@
 #include "ui/viewport/second_body_view.hpp"
 
-#include <algorithm>
-
 #include "app/session/follow.hpp"
 #include "retarget/base/index.hpp"
 #include "retarget/geometry/cloud_normals.hpp"
@@ -19,21 +17,11 @@ RowMatrix weights_by_partner(const Rig& rig, const BoneMatches& matches, int fou
   return weights;
 }
 
-/// Which of its bones performs that one; -1: none.
-int performing(const BoneMatches& matches, int found) {
-  const auto at = std::find(matches.partner.begin(), matches.partner.end(), found);
-  return found < 0 || at == matches.partner.end() ? -1 : static_cast<int>(at - matches.partner.begin());
-}
-
 /// Where it is shown, in a pose.
 void pose_surface(const RiggedMotion& body, int pose, const Vec3& place, BonesMemory& memory) {
   if (memory.frame == pose && memory.offset == place) return;
   memory.frame = pose, memory.offset = place;
-  const Mesh& surface = body.rig.surface;
-  const BoneMotions bones = bone_motions(body.rig, body.motion.poses[static_cast<size_t>(pose)]);
-  const Points posed = skinned(surface.vertices, body.rig.skin, bones);
-  memory.vertices = Points(posed.rowwise() + place.transpose());
-  if (!surface.is_cloud()) memory.normals = vertex_normals(posed, surface.faces);
+  place_surface(body.rig, body.rig.skin, body.motion.poses[static_cast<size_t>(pose)], memory);
 }
 
 /// By the bones that it performs, where the found body is painted by bone; else plain.
@@ -68,7 +56,7 @@ void add_second_body(const app::Session& session, int frame, const Vec3& aside, 
   if (!session.view.source.bones) return;
   PosedBones posed = posed_bones(body->rig, body->motion.poses[static_cast<size_t>(at)]);
   posed.places.rowwise() += place.transpose();
-  add_bone_lines(posed, body->rig, {performing(matches, session.bones.selected), session.view.source.x_ray},
+  add_bone_lines(posed, body->rig, {performer_of(matches, session.bones.selected), session.view.source.x_ray},
                  scene);
 }
 

@@ -108,7 +108,7 @@ TEST(Neighbours, OfACloudAreTheNearest) {
 
 TEST(Stroke, AddsTheMostAtTheHitAndKeepsRowsWeights) {
   const Vec3 hit = inner_thigh();
-  const Brush brush{Head, 0.06f, 0.5f, Brush::Mode::Add};
+  const Brush brush{Head, 0.06f, 0.5f, BrushMode::Add};
   const WeightRows rows = stroke(person().body.weights, person().surface, hit, brush);
   ASSERT_GT(rows.vertex.size(), 20u);
   expect_weights(rows.rows);
@@ -133,7 +133,7 @@ TEST(Stroke, OnOneThighLeavesTheOther) {
     near_other += person().mesh.vertices(v, 0) < -0.005f && (person().at(v) - hit).norm() < 0.09f;
   ASSERT_GT(near_other, 10) << "the other thigh must be in the brush's ball for this test to say anything";
   const WeightRows rows =
-      stroke(person().body.weights, person().surface, hit, {LeftKnee, 0.09f, 1, Brush::Mode::Add});
+      stroke(person().body.weights, person().surface, hit, {LeftKnee, 0.09f, 1, BrushMode::Add});
   ASSERT_GT(rows.vertex.size(), 20u);
   for (const int v : rows.vertex) EXPECT_GT(person().mesh.vertices(v, 0), -1e-6f);
 }
@@ -142,7 +142,7 @@ TEST(Stroke, SubtractsDownToNothingAndGivesToTheParentWhatNobodyHas) {
   RowMatrix weights = RowMatrix::Zero(person().mesh.vertices.rows(), kJointCount);
   weights.col(LeftKnee).setOnes();
   const Vec3 hit = inner_thigh();
-  const WeightRows rows = stroke(weights, person().surface, hit, {LeftKnee, 0.05f, 1, Brush::Mode::Subtract});
+  const WeightRows rows = stroke(weights, person().surface, hit, {LeftKnee, 0.05f, 1, BrushMode::Subtract});
   ASSERT_FALSE(rows.empty());
   expect_weights(rows.rows);
   EXPECT_LT(rows.rows.col(LeftKnee).minCoeff(), 0.01f);
@@ -166,7 +166,7 @@ TEST(Stroke, SmoothsAnEdge) {
   };
   const float before = steepest(weights);
   for (int dab = 0; dab < 10; ++dab)
-    apply(stroke(weights, person().surface, hit, {0, 0.08f, 1, Brush::Mode::Smooth}), weights);
+    apply(stroke(weights, person().surface, hit, {0, 0.08f, 1, BrushMode::Smooth}), weights);
   EXPECT_LT(steepest(weights), 0.5f * before);
   expect_weights(weights);
 }
@@ -183,9 +183,9 @@ TEST(Stroke, RefusesWhatDoesNotFit) {
 TEST(WeightRows, MergeTheNewerOverTheOlder) {
   const Vec3 a = inner_thigh(), b = a + Vec3(0, 0.04f, 0);
   RowMatrix one_by_one = person().body.weights;
-  const WeightRows first = stroke(one_by_one, person().surface, a, {Head, 0.06f, 0.5f, Brush::Mode::Add});
+  const WeightRows first = stroke(one_by_one, person().surface, a, {Head, 0.06f, 0.5f, BrushMode::Add});
   apply(first, one_by_one);
-  const WeightRows second = stroke(one_by_one, person().surface, b, {Neck, 0.06f, 0.5f, Brush::Mode::Add});
+  const WeightRows second = stroke(one_by_one, person().surface, b, {Neck, 0.06f, 0.5f, BrushMode::Add});
   apply(second, one_by_one);
   RowMatrix at_once = person().body.weights;
   const WeightRows both = merged(first, second);
@@ -240,7 +240,7 @@ TEST(MirroredWeights, OfASymmetricBodyGiveItsOtherSide) {
 
 TEST(MirroredWeights, LeaveTheSideTheyComeFrom) {
   RowMatrix weights = person().body.weights;
-  apply(stroke(weights, person().surface, inner_thigh(), {Head, 0.06f, 0.9f, Brush::Mode::Add}), weights);
+  apply(stroke(weights, person().surface, inner_thigh(), {Head, 0.06f, 0.9f, BrushMode::Add}), weights);
   const WeightRows rows = mirrored_weights(weights, person().mesh.vertices, BodySide::Left);
   ASSERT_FALSE(rows.empty());
   for (const int v : rows.vertex) EXPECT_LT(person().mesh.vertices(v, 0), 1e-3f);
