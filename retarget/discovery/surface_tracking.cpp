@@ -24,7 +24,8 @@ struct Schedule {
   float first_radius, last_radius;         // scale of what counts as off the scan
   double first_stiffness, last_stiffness;  // of an edge, in matches
 };
-constexpr Schedule kFromTheFrameBefore = {10, 1.2f, 0.35f, 20, 1}, kFromAFit = {4, 0.5f, 0.35f, 2, 1};
+// Bones have said what belongs together: from a fit hardly anything else has to.
+constexpr Schedule kFromTheFrameBefore = {10, 1.2f, 0.35f, 20, 1}, kFromAFit = {4, 0.5f, 0.35f, 0.7, 0.3};
 constexpr float kReach = 2.5f;        // in radii: no match beyond
 constexpr float kJointScale = 0.06f;  // neighbours that disagree so much count a quarter
 constexpr float kPlain = 0.04f;       // weight of the distance beside that along the normal

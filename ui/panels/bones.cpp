@@ -145,11 +145,11 @@ void draw_table(const BonesDrawing& d) {
   ImGui::PushStyleVar(ImGuiStyleVar_CellPadding, {d.ui().px(4), ImGui::GetStyle().CellPadding.y});
   Table table(d.ui(), "bones.bone",
               {{"Bone"},
-               {"Hangs on"},
-               {"Kind", 40},
-               {"Turns", 44, true},
-               {"Off, mm", 50, true},
-               {"Seen in", 48, true}},
+               {"Parent", 50},
+               {"Kind", 36},
+               {"Turns", 38, true},
+               {"Off, mm", 46, true},
+               {"Seen", 38, true}},
               height);
   ImGui::PopStyleVar();
   if (!table.open()) return;

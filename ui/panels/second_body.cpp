@@ -63,7 +63,7 @@ class MatchTable {
     const int k = performer_of(session_.second.matches, static_cast<int>(j));
     table.row(false, false);
     table.next_cell();
-    ImGui::AlignTextToFramePadding();
+    ImGui::SetCursorPosY(ImGui::GetCursorPosY() + ImGui::GetStyle().FramePadding.y);
     color_chip(context_.ui, bone_color(static_cast<int>(j)));
     text_cut(context_.ui, bone);
     table.next_cell();
