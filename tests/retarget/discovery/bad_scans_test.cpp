@@ -29,14 +29,6 @@ class Told {
   log::Sink before_;
 };
 
-/// Evenly chosen points.
-Mesh sparse(const Mesh& scan, int count) {
-  Mesh few;
-  few.vertices.resize(count, 3);
-  for (Eigen::Index i = 0; i < count; ++i)
-    few.vertices.row(i) = scan.vertices.row(i * scan.vertices.rows() / count);
-  return few;
-}
 Mesh sparse_arm(float angle, int t, const Vec3& moved = Vec3::Zero()) {
   return sparse(bent_arm(angle, static_cast<uint64_t>(t), moved), 1000);
 }
