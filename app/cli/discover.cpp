@@ -65,6 +65,9 @@ void check_task(const DiscoverOptions& options) {
   US_CHECK(options.matches.empty() || !options.perform.empty(), "--matches is of --perform");
   US_CHECK(!options.source.path.empty() || (!options.rig.empty() && !options.perform.empty()),
            "name the scans of one thing that moves: --source");
+  US_CHECK(options.source.person.empty() && options.source.complete <= 0,
+           "--person and --complete look for people: bones are found in scans of one thing (--crop, "
+           "--largest-part)");
   US_CHECK(options.source.path.empty() || options.rig.empty() || options.perform.empty(),
            "what is performed is either the motion of --rig or that of --source");
 }
@@ -158,7 +161,7 @@ void write_files(const DiscoverOptions& options, const DiscoveredRig& rig, const
 
 int find_rig(const DiscoverOptions& options) {
   const std::shared_ptr<Source> source = open_source(as_it_is(options.source));
-  const ScanSequence scans = scan_sequence(source, options.source.path);
+  const ScanSequence scans = scan_sequence(source, options.source.path, options.source.edits);
   const DiscoveredRig rig = found_in(scans, options);
   tell(rig);
   write_files(options, rig, source->to_file(), {{"source", options.source.path}});
@@ -171,10 +174,11 @@ int follow_rig(const DiscoverOptions& options) {
   const RiggedMotion known = read_rig(options.rig);
   const std::shared_ptr<Source> source = open_source(as_it_is(options.source));
   Progress progress("following", source->count().value_or(0));
-  const FollowedScans followed = follow_scans(known, *source, options.source.path, [&](int64_t frames) {
-    progress.step(frames);
-    return !interrupted();
-  });
+  const FollowedScans followed =
+      follow_scans(known, *source, options.source.path, options.source.edits, [&](int64_t frames) {
+        progress.step(frames);
+        return !interrupted();
+      });
   progress.finish();
   tell(followed.rig);
   Json more = {{"source", options.source.path}, {"rig", options.rig}};
@@ -187,13 +191,14 @@ int follow_rig(const DiscoverOptions& options) {
   write_files(options, followed.rig, source->to_file(), more);
   if (options.preview.empty()) return 0;
   source->seek(0);
-  write_sheet(options, followed.rig, scan_sequence(source, options.source.path));
+  write_sheet(options, followed.rig, scan_sequence(source, options.source.path, options.source.edits));
   return 0;
 }
 
 RiggedMotion performing_source(const DiscoverOptions& options) {
   if (!options.rig.empty()) return read_rig(options.rig);
-  return found_in(scan_sequence(open_source(as_it_is(options.source)), options.source.path), options).found;
+  const SourceOptions& scans = options.source;
+  return found_in(scan_sequence(open_source(as_it_is(scans)), scans.path, scans.edits), options).found;
 }
 
 /// The partners in the file, or those that were found, which go into the file.

@@ -39,7 +39,7 @@ SourceOptions as_it_is(SourceOptions options) {
   return options;
 }
 
-ScanSequence scan_sequence(std::shared_ptr<Source> source, const std::string& name) {
+ScanSequence scan_sequence(std::shared_ptr<Source> source, const std::string& name, const ScanEdits& edits) {
   ScanSequence scans;
   scans.name = name;
   const auto first = source->next();
@@ -49,11 +49,12 @@ ScanSequence scan_sequence(std::shared_ptr<Source> source, const std::string& na
   scans.count = length_of(*source);
   scans.fps = source->fps();
   int next = 0;  // that the source hands out
-  scans.scan = [source = std::move(source), next](int frame) mutable {
+  scans.scan = [source = std::move(source), edits, next](int frame) mutable {
     if (frame != next) source->seek(frame);
     next = frame + 1;
     const auto read = source->next();
-    return read && read->usable ? read->mesh : Mesh{};
+    if (!read || !read->usable) return Mesh{};
+    return edits.empty() ? read->mesh : apply(edits, read->mesh);
   };
   return scans;
 }

@@ -16,8 +16,9 @@ namespace understudy::app {
 SourceOptions as_it_is(SourceOptions options);
 
 /// The scans of a source as discover() reads them; it stays open. A source whose length is not known is read
-/// through once. name: its path. Throws Error naming it where it holds no scans.
-ScanSequence scan_sequence(std::shared_ptr<Source> source, const std::string& name);
+/// through once. name: its path; edits: of each scan. Throws Error naming it where it holds no scans.
+ScanSequence scan_sequence(std::shared_ptr<Source> source, const std::string& name,
+                           const ScanEdits& edits = {});
 
 /// discover() as an evaluation calls it.
 RigFinder rig_finder();

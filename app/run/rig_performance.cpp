@@ -54,7 +54,7 @@ RiggedMotion read_rig(const std::string& path) {
 }
 
 FollowedScans follow_scans(const RiggedMotion& known, Source& source, const std::string& name,
-                           const std::function<bool(int64_t)>& going_on) {
+                           const ScanEdits& edits, const std::function<bool(int64_t)>& going_on) {
   constexpr Eigen::Index kFewest = 30;
   FollowedScans followed;
   DiscoveredRig& rig = followed.rig;
@@ -63,7 +63,8 @@ FollowedScans follow_scans(const RiggedMotion& known, Source& source, const std:
   RigFollower follower(known.rig);
   BoneDistances of_bones(known.rig.count());
   bool begun = false;
-  while (const auto frame = source.next()) {
+  while (auto frame = source.next()) {
+    if (frame->usable && !edits.empty()) frame->mesh = apply(edits, frame->mesh);
     RigPose pose = rig.found.motion.poses.empty() ? rest_pose(known.rig) : rig.found.motion.poses.back();
     float off = -1;
     if (frame->usable && finite_count(frame->mesh.vertices) >= kFewest) {
@@ -91,7 +92,7 @@ OtherBody other_body(const std::string& path, const SourceOptions& like, const D
   if (is_rig_file(path)) return {read_rig(path)};
   SourceOptions options = as_it_is(like);
   options.path = path;
-  const ScanSequence scans = scan_sequence(open_source(options), path);
+  const ScanSequence scans = scan_sequence(open_source(options), path, options.edits);
   OtherBody performing;
   performing.is_scan = scans.count == 1;
   if (performing.is_scan) {

@@ -52,6 +52,18 @@ TEST_F(DiscoverCommand, ALampsBonesAreFoundAndItsFileOpensAgain) {
   EXPECT_GT(std::filesystem::file_size(out("r.npz")), 10000u);
 }
 
+TEST_F(DiscoverCommand, OfCroppedScansTheBonesOfWhatIsLeftAreFound) {
+  const std::string scans = lamp();
+  const auto height = [&](const std::string& high) {
+    const Finished run = run_program(
+        {"discover", "--source", scans, "--crop", "-9", "-9", "-9", "9", high, "9", "--out", out("rig.glb")});
+    EXPECT_EQ(run.code, 0) << run.err;
+    return from_character(read_character(out("rig.glb")), 0, 30).rig.surface.vertices.col(1).maxCoeff();
+  };
+  EXPECT_GT(height("9"), 0.25f);
+  EXPECT_LT(height("0.15"), 0.2f);
+}
+
 TEST_F(DiscoverCommand, ItsMotionAloneIsBvh) {
   const Finished run = run_program({"discover", "--source", lamp(), "--out", out("rig.bvh")});
   ASSERT_EQ(run.code, 0) << run.err;

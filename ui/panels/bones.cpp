@@ -146,10 +146,10 @@ void draw_table(const BonesDrawing& d) {
   Table table(d.ui(), "bones.bone",
               {{"Bone"},
                {"Parent", 48},
-               {"Kind", 36},
-               {"Turns", 38, true},
-               {"Off, mm", 46, true},
-               {"Seen", 44, true}},
+               {"Kind", 34},
+               {"Turns", 34, true},
+               {"Off, mm", 44, true},
+               {"Seen", 39, true}},
               height);
   ImGui::PopStyleVar();
   if (!table.open()) return;
