@@ -16,10 +16,10 @@ scans_of() {
   echo "$work/$1/$2"*
 }
 
-# found NAME SCANS: $work/NAME.glb, and its picture $work/NAME.png, titled so.
+# found NAME SCANS [OPTION...]: $work/NAME.glb, and its picture $work/NAME.png, titled so.
 found() {
   ln -sfn "$(realpath "$2")" "$work/$1"
-  "$understudy" discover --source "$work/$1" --out "$work/$1.glb" --preview "$work/$1.png"
+  "$understudy" discover --source "$work/$1" "${@:3}" --out "$work/$1.glb" --preview "$work/$1.png"
 }
 
 # shown PICTURE NAME: into this folder, smaller.
@@ -60,7 +60,7 @@ real() {
 [ $# -gt 0 ] || set -- "${kinds[@]}" person edit gait three ${REAL:+real}
 for what in "$@"; do
   case $what in
-    person) found person assets/samples/scan && shown person 42_bones_person ;;
+    person) found person assets/samples/scan --remove-floor --largest-part && shown person 42_bones_person ;;
     edit | gait | three | real) $what ;;
     *)
       number=34

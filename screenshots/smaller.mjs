@@ -10,7 +10,7 @@ try {
     const page = await browser.open('about:blank', [Number(width), 100]);
     const bytes = (await readFile(picture)).toString('base64');
     const height = await page.evaluate(`(async () => {
-      document.body.style.margin = 0;
+      document.body.style.cssText = 'margin: 0; overflow: hidden';
       const image = new Image();
       image.style.cssText = 'display: block; width: ${width}px';
       image.src = 'data:image/png;base64,${bytes}';

@@ -145,8 +145,8 @@ void draw_table(const BonesDrawing& d) {
   ImGui::PushStyleVar(ImGuiStyleVar_CellPadding, {d.ui().px(4), ImGui::GetStyle().CellPadding.y});
   Table table(d.ui(), "bones.bone",
               {{"Bone"},
-               {"Parent", 48},
-               {"Kind", 34},
+               {"Parent", 47},
+               {"Kind", 36},
                {"Turns", 34, true},
                {"Off, mm", 44, true},
                {"Seen", 39, true}},

@@ -35,7 +35,7 @@ TEST(Refit, ABoneThatIsSplitWhereItBendsFollowsTheScans) {
   EXPECT_FLOAT_EQ(rig.bones[1].off_m, rig.bones[0].off_m);
   apply(rig, FitAgain{}, bending_arm());
   EXPECT_LT(mean_off(rig),
-            0.6f * stiff);  // what remains is the surface's, made of scans that one bone blurred
+            0.7f * stiff);  // what remains is the surface's, made of scans that one bone blurred
   const auto turn = [&](size_t t) { return rig.found.motion.poses[t].turns[1]; };
   EXPECT_NEAR(geodesic_angle(turn(0), turn(kFrames - 1)), angle_at(kFrames - 1), 0.1f);
   EXPECT_GT(rig.bones[1].turned_deg, 30);
