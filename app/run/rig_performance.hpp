@@ -22,8 +22,8 @@ struct FollowedScans {
   DiscoveredRig rig;       ///< what was known, with a pose a scan
   std::vector<double> ms;  ///< of each scan that could be used, but the first, which is searched
 };
-/// Looks only back. name: the source's path. edits: of each scan. going_on: called after each with the number done, false ends it.
-/// Throws Error naming the source where no scan can be used.
+/// Looks only back. name: the source's path; edits: of each scan. going_on: called after each with the number
+/// done, false ends it. Throws Error naming the source where no scan can be used.
 FollowedScans follow_scans(const RiggedMotion& known, Source& source, const std::string& name,
                            const ScanEdits& edits, const std::function<bool(int64_t)>& going_on);
 

@@ -52,8 +52,8 @@ void ask_number(PanelContext& context, const Control& control, float value, cons
 /// Over the whole width.
 void ask_button(PanelContext& context, const Control& control, bool enabled = true);
 
-/// How far a background job is, the time that it takes yet, and a cancel that asks for it. fraction: 0..1, below 0
-/// not known. Marks: NAME, NAME.cancel.
+/// How far a background job is, the time that it takes yet, and a cancel that asks for it. fraction: 0..1;
+/// below 0 it is not known. Marks: NAME, NAME.cancel.
 void job_progress(const app::Session& session, PanelContext& context, const std::string& name, int64_t job,
                   float fraction, const std::string& words);
 
