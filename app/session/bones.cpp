@@ -42,11 +42,10 @@ ScanSequence scans_of(const BonesJob& work) {
   SourceOptions quiet = work.source;
   quiet.quiet = true;
   quiet.follow = false;
-  ScanSequence scans = scan_sequence(open_source(quiet, work.blender.get()), name_of(quiet));
+  ScanSequence scans = scan_sequence(open_source(quiet, work.blender.get()), name_of(quiet), work.edits);
   scans.scan = [read = scans.scan, &work](int frame) {
     Mesh scan = read(frame);
     if (scan.vertices.rows() == 0) return scan;
-    if (!work.edits.empty()) scan = understudy::apply(work.edits, scan);
     const auto t = static_cast<size_t>(frame);
     if (t < work.kept.size() && !cut_out(work.kept[t], scan)) scan = Mesh{};
     return scan;
