@@ -26,7 +26,7 @@ Vec3 along(const Polynomial& c, float t) {
 const Vec3 kLeftColor = hex(0x0072B2), kRightColor = hex(0xE68A00), kMiddleColor = hex(0x50565F);
 
 const std::array<Vec3, 22> kCategories = {
-    hex(0xF2F3F4), hex(0x222222), hex(0xF3C300), hex(0x875692), hex(0xF38400), hex(0xA1CAF1),
+    hex(0xF2F3F4), hex(0x4F5B73), hex(0xF3C300), hex(0x875692), hex(0xF38400), hex(0xA1CAF1),
     hex(0xBE0032), hex(0xC2B280), hex(0x848482), hex(0x008856), hex(0xE68FAC), hex(0x0067A5),
     hex(0xF99379), hex(0x604E97), hex(0xF6A600), hex(0xB3446C), hex(0xDCD300), hex(0x882D17),
     hex(0x8DB600), hex(0x654522), hex(0xE25822), hex(0x2B3D26)};

@@ -203,13 +203,13 @@ Eigen::MatrixXd bone_costs(const LaidBody& laid, const RiggedMotion& source, con
                   of_source = weights_between(skinned(thin.points, own, bones), laid.points, laid.skin,
                                               source.rig.count())
                                   .dense(source.rig.count());
-  const RowMatrix common = of_target.transpose() * of_source;  // [J of the target, J of the source] points
-  Eigen::MatrixXd cost(common.rows(), common.cols());
-  for (Eigen::Index k = 0; k < common.rows(); ++k)
-    for (Eigen::Index j = 0; j < common.cols(); ++j)
-      cost(k, j) =
-          1 - 2 * static_cast<double>(common(k, j)) /
-                  std::max(1e-6, static_cast<double>(of_target.col(k).sum() + of_source.col(j).sum()));
+  Eigen::MatrixXd cost(target.rig.count(), source.rig.count());
+  for (Eigen::Index k = 0; k < cost.rows(); ++k)
+    for (Eigen::Index j = 0; j < cost.cols(); ++j) {
+      const float common = of_target.col(k).cwiseMin(of_source.col(j)).sum(),  // points
+          both = of_target.col(k).sum() + of_source.col(j).sum();
+      cost(k, j) = 1 - 2 * common / std::max(1e-6f, both);
+    }
   return cost;
 }
 

@@ -11,6 +11,7 @@
 #include "retarget/base/error.hpp"
 #include "retarget/base/index.hpp"
 #include "retarget/base/log.hpp"
+#include "retarget/discovery/inner_joints.hpp"
 #include "retarget/discovery/part_tree.hpp"
 #include "retarget/discovery/rest_surface.hpp"
 #include "retarget/discovery/rig_figures.hpp"
@@ -315,6 +316,7 @@ DiscoveredRig Discovery::run() {
   fit_all(kFirmJoints);
   find_joints_again();
   drop_still_bones();
+  draw_joints_inside(tracks_.graph, tree_.rig);
   report("Bones", (kTrackedAgain + kBonesEnd) / 2);
   fit_all(kRigidJoints);
   return finished();

@@ -29,9 +29,6 @@ class Told {
   log::Sink before_;
 };
 
-Mesh sparse_arm(float angle, int t, const Vec3& moved = Vec3::Zero()) {
-  return sparse(bent_arm(angle, static_cast<uint64_t>(t), moved), 1000);
-}
 Mesh both(const Points& a, const Points& b) {
   Mesh mesh;
   mesh.vertices.resize(a.rows() + b.rows(), 3);

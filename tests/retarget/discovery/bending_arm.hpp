@@ -50,6 +50,10 @@ inline Mesh sparse(const Mesh& scan, int count) {
   return few;
 }
 
+inline Mesh sparse_arm(float angle, int t, const Vec3& moved = Vec3::Zero()) {
+  return sparse(bent_arm(angle, static_cast<uint64_t>(t), moved), 1000);
+}
+
 inline ScanSequence sequence(int count, const std::function<Mesh(int)>& scan) {
   ScanSequence scans;
   scans.count = count;

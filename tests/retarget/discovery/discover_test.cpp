@@ -64,15 +64,14 @@ TEST(Discover, ColoursOfCloudsGoOverToTheSurface) {
 
 TEST(Discover, WhatOnlyTravelsIsOneBone) {
   const DiscoveredRig rig = discover(sequence(8, [](int t) {
-    return bent_arm(0.3f, static_cast<uint64_t>(t), {0.03f * static_cast<float>(t), 0, 0});
+    return sparse_arm(0.3f, t, {0.03f * static_cast<float>(t), 0, 0});
   }));
   EXPECT_EQ(rig.found.rig.count(), 1);
   EXPECT_NEAR(rig.found.motion.poses[7].root.x() - rig.found.motion.poses[0].root.x(), 0.21f, 0.02f);
 }
 
 TEST(Discover, WhatStandsStillIsOneBone) {
-  const DiscoveredRig rig =
-      discover(sequence(6, [](int t) { return bent_arm(0.3f, static_cast<uint64_t>(t)); }));
+  const DiscoveredRig rig = discover(sequence(6, [](int t) { return sparse_arm(0.3f, t); }));
   EXPECT_EQ(rig.found.rig.count(), 1);
 }
 
@@ -83,8 +82,8 @@ TEST(Discover, KeepsToTheBonesThatAreAllowed) {
 }
 
 TEST(Discover, AFrameWithoutPointsRepeatsThePoseBefore) {
-  const DiscoveredRig rig = discover(sequence(
-      kFrames, [](int t) { return t == 7 ? Mesh{} : bent_arm(angle_at(t), static_cast<uint64_t>(t)); }));
+  const DiscoveredRig rig =
+      discover(sequence(kFrames, [](int t) { return t == 7 ? Mesh{} : sparse_arm(angle_at(t), t); }));
   ASSERT_EQ(rig.found.motion.poses.size(), static_cast<size_t>(kFrames));
   EXPECT_TRUE(rig.doubted[7]);
   EXPECT_FALSE(rig.doubted[6]);
@@ -94,8 +93,7 @@ TEST(Discover, AFrameWithoutPointsRepeatsThePoseBefore) {
 TEST(Discover, FollowsWhatComesAfterItsKeyFrames) {
   constexpr int kMany = 66;  // bends and stretches slowly
   const auto at = [](int t) { return 0.6f - 0.6f * std::cos(0.15f * static_cast<float>(t)); };
-  const DiscoveredRig rig =
-      discover(sequence(kMany, [&](int t) { return bent_arm(at(t), static_cast<uint64_t>(t)); }));
+  const DiscoveredRig rig = discover(sequence(kMany, [&](int t) { return sparse_arm(at(t), t); }));
   EXPECT_LT(rig.key_frames.size(), static_cast<size_t>(kMany));
   ASSERT_EQ(rig.found.rig.count(), 2);
   const auto turn = [&](int t) {
