@@ -11,8 +11,8 @@ namespace understudy::render {
 /// A person's left, right and middle (blue, orange, dark grey; Okabe and Ito's safe pair).
 extern const Vec3 kLeftColor, kRightColor, kMiddleColor;
 
-/// Kelly's 22 colours of maximum contrast, ordered so that each differs most from those before it; his black is
-/// a slate that shows on dark grounds.
+/// Kelly's 22 colours of maximum contrast, ordered so that each differs most from those before it; his black
+/// is a slate that shows on dark grounds.
 extern const std::array<Vec3, 22> kCategories;
 
 /// Viridis at t in 0..1 (clamped; NaN is grey, as in all scales).

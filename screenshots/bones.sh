@@ -60,14 +60,20 @@ real() {
 [ $# -gt 0 ] || set -- "${kinds[@]}" person edit gait three ${REAL:+real}
 for what in "$@"; do
   case $what in
-    person) found person assets/samples/scan --remove-floor --largest-part && shown person 42_bones_person ;;
+    person)
+      found person assets/samples/scan --remove-floor --largest-part
+      shown person 42_bones_person
+      ;;
     edit | gait | three | real) $what ;;
     *)
       number=34
       for kind in "${kinds[@]}"; do
-        [ "$kind" = "$what" ] && found "$kind" "$(scans_of creatures "$kind")/source" && shown "$kind" "${number}_bones_$kind"
+        if [ "$kind" = "$what" ]; then break; fi
         number=$((number + 1))
       done
+      [ "$number" -lt $((34 + ${#kinds[@]})) ] || { echo "bones.sh: no picture is called '$what'" >&2; exit 2; }
+      found "$what" "$(scans_of creatures "$what")/source"
+      shown "$what" "${number}_bones_$what"
       ;;
   esac
 done

@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
-#include <map>
 #include <utility>
 
 #include "app/cli/commands.hpp"
@@ -19,8 +18,7 @@
 #include "retarget/base/index.hpp"
 #include "retarget/base/part_file.hpp"
 #include "retarget/base/text.hpp"
-#include "retarget/character/gltf_character.hpp"
-#include "retarget/character/rig_character.hpp"
+#include "retarget/discovery/rig_figures.hpp"
 #include "retarget/formats/file_formats.hpp"
 #include "retarget/math/percentile.hpp"
 
@@ -34,31 +32,17 @@ struct DiscoverOptions {
   int parts = 0;
 };
 
-using RigWriter = void (*)(const std::string& path, const RiggedMotion& found);
-
-void write_rig_gltf(const std::string& path, const RiggedMotion& found) {
-  write_gltf_character(path, to_character(found));
-}
-
-/// By the path's suffix; null where nothing writes such files.
-RigWriter writer_of(const std::string& path) {
-  static const std::map<std::string, RigWriter> writers = {
-      {".glb", write_rig_gltf}, {".gltf", write_rig_gltf}, {".bvh", write_rig_bvh}};
-  const auto found = writers.find(file_suffix(path));
-  return found == writers.end() ? nullptr : found->second;
-}
-
 void check_outputs(const DiscoverOptions& options) {
   US_CHECK(
       !options.out.empty() || !options.result.empty() || !options.report.empty() || !options.preview.empty(),
       "nothing is to be written: name a character (--out), an archive (--result), a report (--report) or "
       "a picture (--preview)");
-  US_CHECK(options.out.empty() || writer_of(options.out) != nullptr, options.out,
-           ": a found rig is written as .glb, .gltf or .bvh");
+  if (!options.out.empty()) check_rig_path(options.out);
   for (const std::string& path : {options.out, options.result, options.report, options.preview}) {
     check_not_read(path, {options.source.path, options.rig, options.perform, options.matches});
     check_writable(path);
   }
+  if (!options.matches.empty() && !std::filesystem::exists(options.matches)) check_writable(options.matches);
 }
 
 void check_task(const DiscoverOptions& options) {
@@ -151,7 +135,7 @@ void tell(const DiscoveredRig& rig) {
 /// Character, archive, report; `more` stands in the report.
 void write_files(const DiscoverOptions& options, const DiscoveredRig& rig, const Eigen::Matrix4d& to_file,
                  const Json& more) {
-  if (!options.out.empty()) writer_of(options.out)(options.out, rig.found);
+  if (!options.out.empty()) write_rig(options.out, rig.found);
   if (!options.result.empty()) write_found_rig(options.result, rig, to_file);
   if (options.report.empty()) return;
   Json report = more;
@@ -233,7 +217,7 @@ DiscoveredRig as_discovered(RiggedMotion performed) {
   rig.found = std::move(performed);
   rig.off_m.assign(rig.found.motion.poses.size(), -1);
   rig.doubted.assign(rig.found.motion.poses.size(), false);
-  rig.bones.resize(rig.found.rig.joints.size());
+  measure_motion(rig.found, rig.bones);
   return rig;
 }
 

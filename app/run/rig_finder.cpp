@@ -82,10 +82,12 @@ void write_found_rig(const std::string& path, const DiscoveredRig& rig, const Ei
     npz.push(places, transformed(joint_places(found, bones), to_file).data());
   }
   std::vector<double> parents, kinds, axes, off, doubted;
+  const Mat3 axes_to_file = to_file.topLeftCorner<3, 3>().cast<float>();
   for (const RigJoint& joint : found.joints) {
     parents.push_back(joint.parent);
     kinds.push_back(static_cast<int>(joint.kind));
-    for (int axis = 0; axis < 3; ++axis) axes.push_back(joint.axis[axis]);
+    const Vec3 axis = (axes_to_file * joint.axis).normalized();
+    axes.insert(axes.end(), axis.data(), axis.data() + 3);
   }
   off.assign(rig.off_m.begin(), rig.off_m.end());
   doubted.assign(rig.doubted.begin(), rig.doubted.end());
@@ -117,9 +119,9 @@ Json to_json(const DiscoveredRig& rig) {
     Json bone = {{"name", joint.name},
                  {"parent", joint.parent},
                  {"kind", kJointKindNames[static_cast<size_t>(joint.kind)]},
-                 {"turned_deg", rig.bones[j].turned_deg},
-                 {"off_mm", 1000 * rig.bones[j].off_m}};
-    const float seen = rig.bones[j].seen_share;
+                 {"turned_deg", rig.bones[j].turned_deg}};
+    const float seen = rig.bones[j].seen_share, off = rig.bones[j].off_m;
+    bone["off_mm"] = off < 0 ? Json() : Json(1000 * off);
     bone["seen_share"] = seen < 0 ? Json() : Json(seen);
     if (joint.kind == JointKind::Hinge || joint.kind == JointKind::Slider)
       bone["axis"] = {joint.axis.x(), joint.axis.y(), joint.axis.z()};

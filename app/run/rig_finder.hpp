@@ -23,8 +23,9 @@ ScanSequence scan_sequence(std::shared_ptr<Source> source, const std::string& na
 /// discover() as an evaluation calls it.
 RigFinder rig_finder();
 
-/// vertices [T, V, 3], joints [T, J, 3], parents [J], weights [V, J], faces [F, 3], kinds, axes, off_m,
-/// doubted. to_file: from the rig's coordinates to the scans' own. Throws Error when it cannot be written.
+/// vertices [T, V, 3], joints [T, J, 3], parents [J], weights [V, J], faces [F, 3], kinds [J] (JointKind's
+/// numbers), axes [J, 3] and rest_joints [J, 3] at rest, off_m [T] (-1: not known), doubted [T], fps.
+/// to_file: from the rig's coordinates to the scans' own. Throws Error when it cannot be written.
 void write_found_rig(const std::string& path, const DiscoveredRig& rig, const Eigen::Matrix4d& to_file);
 
 /// Bones, frames and how well they fit.

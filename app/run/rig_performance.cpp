@@ -11,6 +11,7 @@
 #include "retarget/base/error.hpp"
 #include "retarget/base/index.hpp"
 #include "retarget/base/text.hpp"
+#include "retarget/character/gltf_character.hpp"
 #include "retarget/character/read_character.hpp"
 #include "retarget/character/rig_character.hpp"
 #include "retarget/discovery/first_pose.hpp"
@@ -51,6 +52,16 @@ RiggedMotion read_rig(const std::string& path) {
   RiggedMotion read = from_character(character, character.animations.empty() ? -1 : 0, key_rate(character));
   if (read.rig.name.empty()) read.rig.name = path;
   return read;
+}
+
+void check_rig_path(const std::string& path) {
+  US_CHECK(is_rig_file(path) || file_suffix(path) == ".bvh", path,
+           ": a found rig is written as .glb, .gltf or .bvh");
+}
+
+void write_rig(const std::string& path, const RiggedMotion& performed) {
+  check_rig_path(path);
+  is_rig_file(path) ? write_gltf_character(path, to_character(performed)) : write_rig_bvh(path, performed);
 }
 
 FollowedScans follow_scans(const RiggedMotion& known, Source& source, const std::string& name,

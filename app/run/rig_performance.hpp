@@ -17,6 +17,11 @@ bool is_rig_file(const std::string& path);
 /// Error naming the file.
 RiggedMotion read_rig(const std::string& path);
 
+/// Throws Error naming a path that a rig is not written to: .glb, .gltf, or its motion alone as .bvh.
+void check_rig_path(const std::string& path);
+/// By the suffix. Throws Error when it cannot be written.
+void write_rig(const std::string& path, const RiggedMotion& performed);
+
 /// A rig laid on scans one after the other, each as it comes.
 struct FollowedScans {
   DiscoveredRig rig;       ///< what was known, with a pose a scan

@@ -2,12 +2,11 @@
 #include <algorithm>
 
 #include "app/run/exports.hpp"
+#include "app/run/rig_performance.hpp"
 #include "app/session/command_sets.hpp"
 #include "retarget/base/error.hpp"
 #include "retarget/base/part_file.hpp"
 #include "retarget/base/text.hpp"
-#include "retarget/character/gltf_character.hpp"
-#include "retarget/character/rig_character.hpp"
 #include "retarget/formats/file_formats.hpp"
 
 namespace understudy::app {
@@ -92,23 +91,10 @@ void set_kind(Call& c) {
   c.studio.edit_bones(edit);
 }
 
-/// The middle of its vertices: where a bone is cut in two without another place.
-Vec3 middle_of(const understudy::Rig& rig, int joint) {
-  Vec3 sum = Vec3::Zero();
-  float total = 0;
-  for (Eigen::Index v = 0; v < rig.skin.size(); ++v)
-    for (int k = 0; k < kSkinBones; ++k) {
-      if (rig.skin.bones(v, k) != joint) continue;
-      sum += rig.skin.weights(v, k) * rig.surface.vertices.row(v).transpose();
-      total += rig.skin.weights(v, k);
-    }
-  return total > 0 ? Vec3(sum / total) : rig.joints[static_cast<size_t>(joint)].rest;
-}
-
 void split_bone(Call& c) {
   SplitBone edit;
   edit.joint = bone(c, 0);
-  edit.at = c.arguments.size() > 1 ? c.vector(1, "place") : middle_of(rig_of(c).found.rig, edit.joint);
+  edit.at = c.arguments.size() > 1 ? c.vector(1, "place") : middle_of_bone(rig_of(c).found.rig, edit.joint);
   c.label = "Split " + name_of_bone(c, edit.joint);
   c.studio.edit_bones(edit);
 }
@@ -217,17 +203,11 @@ size_t bone_number(const Call& c, size_t i, const understudy::Rig& rig) {
 
 void export_rig(Call& c, const std::shared_ptr<const RiggedMotion>& rig) {
   const std::string path = c.path(0);
-  const std::string suffix = file_suffix(path);
-  const bool is_motion = suffix == ".bvh";
-  US_CHECK(is_motion || suffix == ".glb" || suffix == ".gltf", path,
-           ": a found rig is written as .glb, .gltf or .bvh");
+  check_rig_path(path);
   check_not_read(path, files_read_by(c.document));
   check_writable(path);
   c.studio.jobs().start(
-      "Exporting " + file_name(path),
-      [path, is_motion, rig](JobControl&) {
-        is_motion ? write_rig_bvh(path, *rig) : write_gltf_character(path, to_character(*rig));
-      },
+      "Exporting " + file_name(path), [path, rig](JobControl&) { write_rig(path, *rig); },
       [&studio = c.studio, path] { studio.notify("Exported " + file_name(path), false, showing(path)); });
   remember_folder(c.studio, path);
 }

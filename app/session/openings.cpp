@@ -103,7 +103,7 @@ void Studio::offer_clean_up(const std::string& doubt) {
   if ((doubt.empty() && !lost) || b.advised == b.source_key) return;
   b.advised = b.source_key;
   const bool cleaned = edits.floor && edits.largest_cluster;
-  const std::string sentence = !lost     ? "It may be no person that is seen"
+  const std::string sentence = !lost     ? "This may not be a person"
                                : cleaned ? "No person recognised. Crop the scan in Edit > Scan"
                                          : "No person recognised: a floor or things may hide them";
   log::warn(session_.document.source.path + ": " + (doubt.empty() ? sentence : doubt));

@@ -42,9 +42,9 @@ std::array<float, 2> two_segments(float first, float second, const Vec2& at, flo
 }
 
 int joint_named(const Rig& rig, const std::string& name) {
-  for (int j = 0; j < rig.count(); ++j)
-    if (rig.joints[static_cast<size_t>(j)].name == name) return j;
-  throw Error(rig.name + " has no joint '" + name + "'");
+  const int j = bone_named(rig, name);
+  US_CHECK(j >= 0, rig.name, " has no joint '", name, "'");
+  return j;
 }
 
 Vec3 lowest_of(const Rig& rig, int bone) {

@@ -122,7 +122,7 @@ std::vector<Look> looks_at(const PosedShapes& source, const PosedShapes& target)
   return looks;
 }
 
-/// The source's points on the target's as a look has them, every `step`-th of them.
+/// The source's points on the target's as a look has them; rough: only the first ones, in fewer rounds.
 ProportionFit fitted(const Look& look, const Rig& source, const SkinWeights& skin, bool rough) {
   const ThinnedFrame& points = rough ? look.source->rough : look.source->surface;
   PosedBody body;
@@ -143,12 +143,6 @@ ProportionFit fitted(const Look& look, const Rig& source, const SkinWeights& ski
 int performer_of(const BoneMatches& matches, int bone) {
   const auto at = std::find(matches.partner.begin(), matches.partner.end(), bone);
   return bone < 0 || at == matches.partner.end() ? -1 : static_cast<int>(at - matches.partner.begin());
-}
-
-int bone_named(const Rig& rig, const std::string& name) {
-  const auto found = std::find_if(rig.joints.begin(), rig.joints.end(),
-                                  [&](const RigJoint& joint) { return joint.name == name; });
-  return found == rig.joints.end() ? -1 : static_cast<int>(found - rig.joints.begin());
 }
 
 void check_matches(const BoneMatches& matches, const Rig& source, const Rig& target) {

@@ -16,8 +16,6 @@ struct BoneMatches {
 };
 /// Which of the target's bones performs a bone of the source; -1: none does.
 int performer_of(const BoneMatches& matches, int bone);
-/// The number of the first bone of that name; -1: none has it.
-int bone_named(const Rig& rig, const std::string& name);
 /// A bone of a source and the one of a target that performs it, as somebody chose.
 struct ChosenMatch {
   std::string bone, partner;  ///< names; partner empty: no bone of the target does

@@ -49,7 +49,7 @@ void check_count(const ScanSequence& scans, int usable, const std::string& wrong
            ": a skeleton is found in how a thing moves: that takes two frames or more, not ", usable, wrong);
 }
 
-/// All frames of a short sequence; of a long one every second or third, from the first on.
+/// All frames of a short sequence; else so many from the first on, as far apart as kKeyRate allows.
 std::vector<int> key_frames_of(int count, double fps) {
   const int needed = (count + kKeyFrames - 1) / kKeyFrames,
             widest = std::max(1, static_cast<int>(std::floor(fps / kKeyRate)));
@@ -157,7 +157,7 @@ void Discovery::bind_points() {
 void Discovery::find_bones() {
   parts_ = find_rigid_parts(frames_, tracks_, options_.parts);
   tree_ = find_part_tree(tracks_, parts_);
-  add_turntables(tracks_, parts_, tree_);
+  add_turntables(tracks_, parts_, tree_, options_.parts);
   bind_points();
   bones_.assign(frames_.size(), BoneMotions(tree_.part_of_bone.size()));
   for (size_t t = 0; t < frames_.size(); ++t)

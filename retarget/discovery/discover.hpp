@@ -43,7 +43,7 @@ struct DiscoveryOptions {
 struct FoundBone {
   float turned_deg = 0;  ///< against its parent, furthest from rest
   float slid_m = 0;      ///< of a slider
-  float off_m = 0;       ///< of its surface from the scans, mean over the frames
+  float off_m = -1;      ///< of its surface from the scans, mean over the frames; -1: not known
   /// Of the frames those in which scans show its surface (see BoneDistances), 0 .. 1; -1: not known.
   float seen_share = -1;
 };

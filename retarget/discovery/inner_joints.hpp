@@ -6,9 +6,9 @@
 
 namespace understudy {
 
-/// Motion hardly tells where a joint lies along what both bones turn about, and cloth has it lie in the air: joints
-/// outside the graph's surface at rest, or just below it, go to the nearest middle of a ball that fits inside.
-/// Root and axes stay.
+/// Motion hardly tells where a joint lies along what both bones turn about, and cloth has it lie in the air:
+/// joints outside the graph's surface at rest go to the nearest middle of a ball that fits inside. Root and
+/// axes stay.
 void draw_joints_inside(const DeformationGraph& graph, Rig& rig);
 
 }  // namespace understudy

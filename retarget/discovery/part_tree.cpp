@@ -226,10 +226,10 @@ PartJoint find_joint(const std::vector<RigidMotion>& parent, const std::vector<R
   }
   joint.off_m = static_cast<float>(std::sqrt(off / static_cast<double>(parent.size())));
   const MainDirection turn = main_direction(vectors), slide = main_direction(slides);
-  // Of a swing: from end to end.
-  joint.turn_deg = 2 * std::sqrt(2.0f) * kDegrees * turn.first;
-  joint.slide_m = 2 * std::sqrt(2.0f) * slide.first;
-  const bool turns_much = joint.turn_deg > kFixedTurn_deg, slides_much = joint.slide_m > kFixedSlide * size_m;
+  // Of a swing.
+  const float end_to_end = 2 * std::sqrt(2.0f);
+  const bool turns_much = end_to_end * kDegrees * turn.first > kFixedTurn_deg,
+             slides_much = end_to_end * slide.first > kFixedSlide * size_m;
   if (!turns_much) {
     joint.kind = slides_much ? JointKind::Slider : JointKind::Fixed;
     joint.axis = slide.axis;

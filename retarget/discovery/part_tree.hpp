@@ -14,8 +14,6 @@ struct PartJoint {
   Vec3 rest = Vec3::Zero();   ///< the place that both carry alike, at rest, metres
   Vec3 axis = Vec3::UnitY();  ///< of a hinge or slider, at rest
   float off_m = 0;            ///< how far apart both carry it, root of the mean square over the frames
-  float turn_deg = 0;         ///< how far one swings against the other, from end to end, about its main axis
-  float slide_m = 0;          ///< how far that place moves against the parent, along its main direction
 };
 /// The joint of two bodies that move so, [T] each, which touch at `seam`: the place c that minimises
 /// sum_t |A_t c - B_t c|^2, held near the seam where the motion does not tell (along a hinge's axis).

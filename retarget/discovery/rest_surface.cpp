@@ -28,7 +28,7 @@ struct Blend {
   }
 };
 
-/// Weights of a place at rest: of the nearest points, the more the nearer.
+/// How a place at rest moves: as the nearest points do, the more the nearer.
 Blend blend_at(const Vec3& rest, const FittedSurface& surface, const PointTree& tree,
                const BoneMotions& bones, std::vector<PointTree::Near>& near) {
   constexpr int kNear = 4;

@@ -150,14 +150,15 @@ bool turn_on_two_axes(const SurfaceTracks& tracks, int j, RigidParts& parts, Par
 
 }  // namespace
 
-void add_turntables(const SurfaceTracks& tracks, RigidParts& parts, PartTree& tree) {
+void add_turntables(const SurfaceTracks& tracks, RigidParts& parts, PartTree& tree, int most) {
   const float size = box_diagonal(tracks.graph.points);
   for (int j = tree.rig.count() - 1; j > 0; --j) {
     RigJoint& joint = tree.rig.joints[static_cast<size_t>(j)];
     const int foot_part = tree.part_of_bone[static_cast<size_t>(joint.parent)];
     if (!stands_still(parts.motions[static_cast<size_t>(foot_part)], joint.rest, size)) continue;
     if (joint.kind != JointKind::Ball && joint.kind != JointKind::Hinge) continue;
-    if (turn_on_two_axes(tracks, j, parts, tree) || joint.kind == JointKind::Ball) continue;
+    const bool may_be_two = most == 0 || parts.count() < most;
+    if ((may_be_two && turn_on_two_axes(tracks, j, parts, tree)) || joint.kind == JointKind::Ball) continue;
     const Foot foot(tracks.graph, parts.of_point, foot_part, joint.rest, joint.axis);
     if (!foot.is_round()) continue;
     foot.give_near_half(tree.part_of_bone[static_cast<size_t>(j)], parts.of_point);

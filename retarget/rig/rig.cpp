@@ -103,6 +103,12 @@ Points Rig::rest_joints() const {
   return places;
 }
 
+int bone_named(const Rig& rig, const std::string& name) {
+  const auto found = std::find_if(rig.joints.begin(), rig.joints.end(),
+                                  [&](const RigJoint& joint) { return joint.name == name; });
+  return found == rig.joints.end() ? -1 : static_cast<int>(found - rig.joints.begin());
+}
+
 void check_rig(const Rig& rig) {
   US_CHECK(rig.count() > 0, rig.name, ": a rig without joints");
   for (int j = 0; j < rig.count(); ++j) {

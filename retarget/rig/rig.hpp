@@ -51,6 +51,8 @@ struct Rig {
   int count() const { return static_cast<int>(joints.size()); }
   Points rest_joints() const;  ///< [J, 3]
 };
+/// The number of the first bone of that name; -1: none has it.
+int bone_named(const Rig& rig, const std::string& name);
 /// Throws Error naming what is wrong: no joint, a parent that does not come before, weights that fit neither
 /// surface nor joints, numbers that are not finite.
 void check_rig(const Rig& rig);
@@ -80,7 +82,8 @@ using BoneMotions = std::vector<RigidMotion>;
 BoneMotions bone_motions(const Rig& rig, const RigPose& pose);
 /// Where the joints then are, [J, 3].
 Points joint_places(const Rig& rig, const BoneMotions& bones);
-/// Linear blend skinning of rest points [V, 3] with these weights.
+/// Linear blend skinning of rest points [V, 3] with these weights. Throws Error for different numbers of
+/// them.
 Points skinned(const Points& rest, const SkinWeights& skin, const BoneMotions& bones);
 /// The pose in which every joint allows what these motions ask for, as nearly as its kind lets it.
 RigPose pose_of(const Rig& rig, const BoneMotions& bones);

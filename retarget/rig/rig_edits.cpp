@@ -118,11 +118,6 @@ Vec3 along_bone(const Rig& rig, int bone) {
   return Eigen::SelfAdjointEigenSolver<Mat3>(spread.covariance).eigenvectors().col(2);
 }
 
-bool is_name(const Rig& rig, const std::string& name) {
-  return std::any_of(rig.joints.begin(), rig.joints.end(),
-                     [&](const RigJoint& joint) { return joint.name == name; });
-}
-
 std::vector<int> change(RiggedMotion& performed, const MergeBone& edit) {
   hanging_joint(performed.rig, edit.joint, "it has no parent to become one with");
   const std::vector<BoneMotions> motions = motions_of(performed);
@@ -225,7 +220,7 @@ std::vector<int> change(RiggedMotion& performed, const SplitBone& edit) {
   }
   rig.skin = renumbered(rig.skin, numbers);
   RigJoint added{"", edit.joint, JointKind::Ball, cut.through, first.axis};
-  for (int n = 2; added.name.empty() || is_name(rig, added.name); ++n)
+  for (int n = 2; added.name.empty() || bone_named(rig, added.name) >= 0; ++n)
     added.name = first.name + ' ' + std::to_string(n);
   rig.joints.insert(rig.joints.begin() + other, added);
   cut_skin(rig, cut, edit.joint, other);
@@ -301,9 +296,8 @@ std::vector<int> change(RiggedMotion& performed, const RootAt& edit) {
     turned = {turned.name, bone, below.kind, below.rest, below.axis};
     bone = below.parent;
   }
-  const BoneSpread spread = spread_of(rig, edit.joint);
   RigJoint& root = joints[static_cast<size_t>(edit.joint)];
-  root = {root.name, -1, JointKind::Free, spread.weight > 0 ? spread.middle : root.rest, Vec3::UnitY()};
+  root = {root.name, -1, JointKind::Free, middle_of_bone(rig, edit.joint), Vec3::UnitY()};
 
   const std::vector<int> order = in_order(joints, edit.joint);
   std::vector<int> numbers(order.size());
@@ -320,7 +314,7 @@ std::vector<int> change(RiggedMotion& performed, const RootAt& edit) {
 void change(RiggedMotion& performed, const RenameBone& edit) {
   RigJoint& joint = joint_of(performed.rig, edit.joint);
   US_CHECK(edit.name.find_first_not_of(" \t\r\n") != std::string::npos, "a bone must have a name");
-  US_CHECK(edit.name == joint.name || !is_name(performed.rig, edit.name), "another bone is called ",
+  US_CHECK(edit.name == joint.name || bone_named(performed.rig, edit.name) < 0, "another bone is called ",
            edit.name);
   joint.name = edit.name;
 }
@@ -478,6 +472,11 @@ void change(RiggedMotion&, const FitAgain&) {
 }
 
 }  // namespace
+
+Vec3 middle_of_bone(const Rig& rig, int joint) {
+  const BoneSpread spread = spread_of(rig, joint);
+  return spread.weight > 0 ? spread.middle : rig.joints[static_cast<size_t>(joint)].rest;
+}
 
 std::vector<int> apply(RiggedMotion& performed, const RigEdit& edit) {
   for (const RigPose& pose : performed.motion.poses)

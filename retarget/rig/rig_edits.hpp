@@ -175,6 +175,9 @@ std::vector<int> apply(RiggedMotion& performed, const RigEdit& edit);
 /// One pose in which a bone is turned as by TurnBone, whatever the edit's frame. Throws Error as apply().
 RigPose turned(const Rig& rig, const RigPose& pose, const TurnBone& edit);
 
+/// The weighted middle of a bone's vertices at rest; of one without any its joint.
+Vec3 middle_of_bone(const Rig& rig, int joint);
+
 /// MergeBone of a rig alone. Returns the new numbers, as apply().
 std::vector<int> merge_into_parent(Rig& rig, int joint);
 

@@ -6,9 +6,11 @@
 #include "app/cli/evaluation.hpp"
 #include "app/run/case_maker.hpp"
 #include "app/run/rig_evaluation.hpp"
+#include "app/run/rig_finder.hpp"
 #include "app/run/rig_truth_file.hpp"
 #include "retarget/base/error.hpp"
 #include "retarget/formats/mesh_reader.hpp"
+#include "retarget/formats/npz.hpp"
 #include "tests/app/program.hpp"
 #include "tests/support/moving_arm.hpp"
 #include "tests/support/training_folder.hpp"
@@ -237,6 +239,26 @@ TEST_F(RigCases, EvalTellsTheFiguresOfAKind) {
   eval.baseline = "fit";
   eval.body = "no.npz";
   EXPECT_THROW(evaluate(eval, [](const CaseResult&) {}), Error);
+}
+
+/// Of scans in centimetres whose z is up.
+TEST_F(RigCases, AFoundRigIsWrittenInTheScansOwnCoordinates) {
+  DiscoveredRig rig;
+  understudy::Rig& bar = rig.found.rig;
+  bar.joints = {{"root", -1, JointKind::Free, {0, 0, 0}, Vec3::UnitY()},
+                {"end", 0, JointKind::Hinge, {0, 1, 0}, Vec3::UnitY()}};
+  bar.surface.vertices = (Points(3, 3) << 0, 0, 0, 0, 1, 0, 0, 2, 0.5f).finished();
+  bar.surface.faces = (Faces(1, 3) << 0, 1, 2).finished();
+  bar.skin = SkinWeights::rigid({0, 0, 1});
+  rig.found.motion.poses = {rest_pose(bar)};
+  rig.bones.resize(2), rig.off_m = {-1}, rig.doubted = {false};
+  Eigen::Matrix4d to_file = Eigen::Matrix4d::Zero();
+  to_file(0, 0) = to_file(2, 1) = 100, to_file(1, 2) = -100, to_file(3, 3) = 1;
+  write_found_rig(scratch.path("r.npz"), rig, to_file);
+  const Npz read = read_npz(scratch.path("r.npz"));
+  EXPECT_EQ(read.at("vertices").values, (std::vector<float>{0, 0, 0, 0, 0, 100, 0, -50, 200}));
+  EXPECT_EQ(read.at("joints").values, (std::vector<float>{0, 0, 0, 0, 0, 100}));
+  EXPECT_EQ(read.at("axes").values, (std::vector<float>{0, 0, 1, 0, 0, 1})) << "of unit length";
 }
 
 }  // namespace

@@ -84,10 +84,16 @@ TEST_F(DiscoverCommand, AFoundRigIsFollowedInScansAndPerformedByAnother) {
   const Json report = Json::parse(read_bytes(out("f.json")));
   EXPECT_EQ(report["frames"], kScans);
   EXPECT_GT(report["ms"].get<double>(), 0);
-  const Finished performed =
-      run_program({"discover", "--rig", out("rig.glb"), "--perform", out("again.glb"), "--matches",
-                   out("m.json"), "--out", out("performed.glb"), "--preview", out("p.png")});
+  const Finished performed = run_program({"discover", "--rig", out("rig.glb"), "--perform", out("again.glb"),
+                                          "--matches", out("m.json"), "--out", out("performed.glb"),
+                                          "--report", out("p.json"), "--preview", out("p.png")});
   ASSERT_EQ(performed.code, 0) << performed.err;
+  double most = 0;
+  for (const Json& bone : Json::parse(read_bytes(out("p.json")))["bones"]) {
+    most = std::max(most, bone["turned_deg"].get<double>());
+    EXPECT_TRUE(bone["off_mm"].is_null()) << "it was laid on no scans";
+  }
+  EXPECT_GT(most, 5);
   const RiggedMotion read = from_character(read_character(out("performed.glb")), 0, 30);
   EXPECT_EQ(read.motion.poses.size(), static_cast<size_t>(kScans));
   Json matches = Json::parse(read_bytes(out("m.json")));

@@ -56,11 +56,7 @@ void follow_rig(const app::Session& session, BonesPanelState& state) {
   if (!state.of) return;
   const SkinWeights& skin = state.of->found.rig.skin;
   state.vertices.assign(state.of->found.rig.joints.size(), 0);
-  for (Eigen::Index v = 0; v < skin.size(); ++v) {
-    Eigen::Index most_of = 0;
-    skin.weights.row(v).maxCoeff(&most_of);
-    ++state.vertices[static_cast<size_t>(skin.bones(v, most_of))];
-  }
+  for (Eigen::Index v = 0; v < skin.size(); ++v) ++state.vertices[static_cast<size_t>(skin.main_bone(v))];
 }
 
 void draw_start_rows(const BonesDrawing& d) {
@@ -163,7 +159,7 @@ void draw_table(const BonesDrawing& d) {
     table.cell(joint.parent < 0 ? "\u2013" : d.rig().joints[static_cast<size_t>(joint.parent)].name);
     table.cell(kJointKindNames[static_cast<size_t>(joint.kind)]);
     table.cell(turned(joint, bone));
-    table.cell(printed("%.1f", 1000 * static_cast<double>(bone.off_m)));
+    table.cell(bone.off_m < 0 ? "\u2013" : printed("%.1f", 1000 * static_cast<double>(bone.off_m)));
     table.cell(bone.seen_share < 0 ? "\u2013"
                                    : printed("%.0f %%", 100 * static_cast<double>(bone.seen_share)));
   }

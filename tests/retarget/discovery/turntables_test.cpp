@@ -48,6 +48,10 @@ TEST(Turntables, ARoundFootStandsAndTheLampTurnsOnIt) {
   RigidParts parts = find_rigid_parts(lamp.frames, lamp.tracks);
   PartTree tree = find_part_tree(lamp.tracks, parts);
   const int found = tree.rig.count();
+  RigidParts as_many = parts;
+  PartTree within = tree;
+  add_turntables(lamp.tracks, as_many, within, found);
+  EXPECT_EQ(within.rig.count(), found) << "no more bones than are allowed";
   add_turntables(lamp.tracks, parts, tree);
   ASSERT_EQ(tree.rig.count(), found + 1);
   ASSERT_EQ(parts.count(), found + 1);
