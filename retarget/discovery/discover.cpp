@@ -316,7 +316,7 @@ DiscoveredRig Discovery::run() {
   fit_all(kFirmJoints);
   find_joints_again();
   drop_still_bones();
-  draw_joints_inside(tracks_.graph, tree_.rig);
+  draw_joints_inside(frames_[static_cast<size_t>(tracks_.rest_frame)], tracks_.graph, tree_.rig);
   report("Bones", (kTrackedAgain + kBonesEnd) / 2);
   fit_all(kRigidJoints);
   return finished();

@@ -10,32 +10,31 @@ constexpr int kLookedAt = 5, kBallsTried = 50;  // nearest ones
 constexpr float kJustBelow = 0.02f;             // of the spacing of nodes
 
 /// How far a place is above the surface, metres, by the tangent planes of the points near it.
-float height_above(const PointTree& surface, const Points& normals, const Vec3& place) {
+float height_above(const ThinnedFrame& surface, const Vec3& place) {
   std::vector<PointTree::Near> found;
-  surface.nearest(place, kLookedAt, found);
+  surface.tree.nearest(place, kLookedAt, found);
   float sum = 0;
   for (const PointTree::Near& near : found)
-    sum += normals.row(near.point).dot(place.transpose() - surface.points().row(near.point));
+    sum += surface.normals.row(near.point).dot(place.transpose() - surface.points.row(near.point));
   return sum / static_cast<float>(found.size());
 }
 
 }  // namespace
 
-void draw_joints_inside(const DeformationGraph& graph, Rig& rig) {
-  const PointTree surface(graph.points);
+void draw_joints_inside(const ThinnedFrame& rest, const DeformationGraph& graph, Rig& rig) {
   const PointTree balls(graph.points - graph.radii.asDiagonal() * graph.normals);
   const auto inside = [&](const Vec3& place) {
-    return height_above(surface, graph.normals, place) <= -kJustBelow * graph.spacing;
+    return height_above(rest, place) <= -kJustBelow * graph.spacing;
   };
   std::vector<PointTree::Near> found;
   for (int j = 1; j < rig.count(); ++j) {
-    Vec3& rest = rig.joints[static_cast<size_t>(j)].rest;
-    if (inside(rest)) continue;
-    balls.nearest(rest, kBallsTried, found);
+    Vec3& joint = rig.joints[static_cast<size_t>(j)].rest;
+    if (inside(joint)) continue;
+    balls.nearest(joint, kBallsTried, found);
     for (const PointTree::Near& near : found) {
       const Vec3 middle = balls.points().row(near.point).transpose();
       if (!inside(middle)) continue;  // the ball of a point whose normal is wrong
-      rest = middle;
+      joint = middle;
       break;
     }
   }
