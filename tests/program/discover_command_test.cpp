@@ -88,8 +88,9 @@ TEST_F(DiscoverCommand, AFoundRigIsFollowedInScansAndPerformedByAnother) {
                                           "--matches", out("m.json"), "--out", out("performed.glb"),
                                           "--report", out("p.json"), "--preview", out("p.png")});
   ASSERT_EQ(performed.code, 0) << performed.err;
+  const Json told = Json::parse(read_bytes(out("p.json")));
   double most = 0;
-  for (const Json& bone : Json::parse(read_bytes(out("p.json")))["bones"]) {
+  for (const Json& bone : told["bones"]) {
     most = std::max(most, bone["turned_deg"].get<double>());
     EXPECT_TRUE(bone["off_mm"].is_null()) << "it was laid on no scans";
   }

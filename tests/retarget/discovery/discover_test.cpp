@@ -71,7 +71,8 @@ TEST(Discover, WhatOnlyTravelsIsOneBone) {
 }
 
 TEST(Discover, WhatStandsStillIsOneBone) {
-  const DiscoveredRig rig = discover(sequence(6, [](int t) { return sparse_arm(0.3f, t); }));
+  const DiscoveredRig rig =
+      discover(sequence(6, [](int t) { return bent_arm(0.3f, static_cast<uint64_t>(t)); }));
   EXPECT_EQ(rig.found.rig.count(), 1);
 }
 
@@ -93,7 +94,8 @@ TEST(Discover, AFrameWithoutPointsRepeatsThePoseBefore) {
 TEST(Discover, FollowsWhatComesAfterItsKeyFrames) {
   constexpr int kMany = 66;  // bends and stretches slowly
   const auto at = [](int t) { return 0.6f - 0.6f * std::cos(0.15f * static_cast<float>(t)); };
-  const DiscoveredRig rig = discover(sequence(kMany, [&](int t) { return sparse_arm(at(t), t); }));
+  const DiscoveredRig rig =
+      discover(sequence(kMany, [&](int t) { return bent_arm(at(t), static_cast<uint64_t>(t)); }));
   EXPECT_LT(rig.key_frames.size(), static_cast<size_t>(kMany));
   ASSERT_EQ(rig.found.rig.count(), 2);
   const auto turn = [&](int t) {
