@@ -1,6 +1,6 @@
 // node study_play.mjs CHROMIUM SCENE WEB DOWNLOADS [...]: takes part in the study of a folder that
 // `understudy study web` wrote. Prints what was seen and done as JSON.
-import {existsSync} from 'node:fs';
+import {existsSync, statSync} from 'node:fs';
 import {cp, mkdir, readFile, rename, rm} from 'node:fs/promises';
 import {createServer} from 'node:http';
 import {join} from 'node:path';
@@ -21,8 +21,9 @@ const address_in = folder => pathToFileURL(join(folder, 'index.html')).href;
 
 async function downloaded(name) {
   const path = join(downloads, name);
-  for (let i = 0; i < 500 && !existsSync(path); ++i) await pause(20);
-  if (!existsSync(path)) throw new Error(`${name} was not downloaded`);
+  const is_there = () => existsSync(path) && statSync(path).size > 0;  // empty until all of it is written
+  for (let i = 0; i < 500 && !is_there(); ++i) await pause(20);
+  if (!is_there()) throw new Error(`${name} was not downloaded`);
 }
 
 async function enter(page) {
