@@ -28,7 +28,8 @@ RigFinder rig_finder();
 /// to_file: from the rig's coordinates to the scans' own. Throws Error when it cannot be written.
 void write_found_rig(const std::string& path, const DiscoveredRig& rig, const Eigen::Matrix4d& to_file);
 
-/// Bones, frames and how well they fit.
+/// Bones, frames and how well they fit: mm, degrees, axes at rest in the rig's own coordinates; null: not
+/// known.
 Json to_json(const DiscoveredRig& rig);
 
 }  // namespace understudy::app

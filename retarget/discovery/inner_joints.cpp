@@ -1,6 +1,5 @@
 #include "retarget/discovery/inner_joints.hpp"
 
-#include <utility>
 #include <vector>
 
 namespace understudy {
