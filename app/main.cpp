@@ -25,6 +25,7 @@ constexpr Subcommand kSubcommands[] = {
     {"export", "a character performs motions, as an animated GLB or glTF", declare_export},
     {"discover", "finds the bones of anything that moves in its scans", declare_discover},
     {"fill", "makes the frames of a motion that were not captured, or not well", declare_fill},
+    {"style", "lets somebody move in another style, on their own bones", declare_style},
     {"blend", "makes what lies between two to four motions", declare_blend},
     {"map", "shows the steps of many motions by their likeness, and finds those like a given one",
      declare_map},

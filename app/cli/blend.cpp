@@ -120,7 +120,7 @@ BlendStep perform_step(const BlendOptions& options, BlendRecipe blend, const std
     step.clip.poses.push_back(frame->result.pose);
     step.joints.push_back(frame->result.joints);
     step.made.push_back(frame->result.observed.joints);
-    step.source_joints.push_back(frame->result.source.joints);
+    step.source_joints.push_back(source_joints(frame->result));
     doubt_m.push_back(frame->result.observed.doubt_m);
     check_interrupt("after " + step.clip.name);
   }

@@ -55,8 +55,9 @@ void evaluate_frame(const RetargetedFrame& frame, const PreparedCharacter* targe
     evaluated.joints = &result.joints;
     evaluated.rotations = &result.pose.local;
   }
-  evaluated.source_joints = &result.source.joints;
-  evaluated.raw_joints = result.flagged ? &result.source.joints : &result.observed.joints;
+  evaluated.source_joints = &source_joints(result);
+  evaluated.raw_joints =
+      result.flagged || result.observed.unstyled ? &source_joints(result) : &result.observed.joints;
   evaluated.confidence = &result.confidence;
   const SeenJoints visibility = result.flagged ? SeenJoints::Zero() : result.source.visibility;
   evaluated.visibility = &visibility;

@@ -37,6 +37,7 @@ struct ExportOptions {
   TargetOptions target;          // what all targets share
   CharacterExportOptions file;
   MethodOptions how;
+  TempoChoice tempo;
   bool print_map = false, all_takes = false, chose_influences = false;
   int64_t frames = 0;
 };
@@ -114,16 +115,23 @@ void perform(const ExportOptions& options, const Role& role, Retargeter& retarge
   const bool is_together = options.targets.size() > 1;
   CharacterClip clip{is_together ? clip_name(path) : role.called, source->fps(), {}};
   std::vector<float> doubt_m;
+  TempoStream tempo(options.tempo, retargeter.performer().target().joints, source->fps());
+  const auto add = [&](const std::vector<PerformedFrame>& frames) {
+    for (const PerformedFrame& frame : frames) {
+      clip.poses.push_back(frame.pose);
+      doubt_m.push_back(frame.observed.doubt_m);
+      input.source_joints.push_back(source_joints(frame));
+    }
+  };
   Progress progress(role.called + " -> " + input.name, source->count().value_or(0));
   while (const auto frame = retargeted.next()) {
-    clip.poses.push_back(frame->result.pose);
-    doubt_m.push_back(frame->result.observed.doubt_m);
-    input.source_joints.push_back(frame->result.source.joints);
+    add(tempo.push(frame->result));
     progress.step(retargeted.frames());
     check_interrupt("after frame " + std::to_string(frame->scan.number));
     if (options.frames > 0 && retargeted.frames() >= options.frames) break;
   }
   progress.finish();
+  add(tempo.finish());
   check_interrupt("after " + std::to_string(retargeted.frames()) + " frames");
   retargeted.check_used();
   if (retargeted.flagged() > 0)
@@ -163,6 +171,7 @@ CastTarget open_cast_target(const ExportOptions& options, const std::string& pat
 }
 
 Performance perform_sources(const ExportOptions& options, const ExportFormat& format) {
+  check(options.tempo);
   US_CHECK(!options.sources.empty(), "--source is required: the motion to perform");
   US_CHECK(!options.targets.empty(), "--target is required: the character that performs it");
   US_CHECK(options.sources.size() == 1 || format.is_character, options.out, ": ", format.label,
@@ -406,6 +415,7 @@ Action declare_export(CLI::App& command) {
   add_target_options(command, options->target);
   add_file_options(command, *options);
   add_method_options(command, options->how);
+  add_tempo_options(command, options->tempo);
   return [options, &command] {
     options->not_of_documents = first_not_of_documents(command);
     options->chose_influences = command.get_option("--influences")->count() > 0;

@@ -112,8 +112,9 @@ void fill_take(const FillOptions& options, Studio& studio) {
 std::vector<MadeFrames> made_of(const Session& session) {
   const Motion& shown = session.takes[0].shown;
   std::vector<float> doubt_m;
-  for (const int frame : kept_frames(session.document.takes[0].pose_edits, ssize(shown.poses)))
-    doubt_m.push_back(frame < ssize(shown.doubt_m) ? shown.doubt_m[static_cast<size_t>(frame)] : 0);
+  for (const MomentBetween& moment : moments_of(session, 0))
+    doubt_m.push_back(moment.before < ssize(shown.doubt_m) ? shown.doubt_m[static_cast<size_t>(moment.before)]
+                                                           : 0);
   return made_frames(doubt_m);
 }
 
@@ -128,11 +129,10 @@ Json report_of(const FillOptions& options, const Session& session, const std::ve
   report["source"] = options.source.path;
   report["target"] = options.target.path;
   report["fps"] = session.source.fps;
-  const PoseEdits& edits = session.document.takes[0].pose_edits;
-  report["frames"] = kept_frames(edits, ssize(session.takes[0].shown.poses)).size();
+  report["frames"] = moments_of(session, 0).size();
   report["learned"] = options.learned;
   report["variation"] = options.variation;
-  if (edits.loop) report["loop"] = loop_of(session, *edits.loop);
+  if (const auto& loop = session.document.takes[0].pose_edits.loop) report["loop"] = loop_of(session, *loop);
   report["made_frames"] = to_json(made);
   return report;
 }

@@ -25,6 +25,9 @@ struct Running {
   std::unique_ptr<Retargeter> retargeter;
   std::unique_ptr<RetargetedSource> retargeted;
   std::unique_ptr<MotionOutput> output;  // null: no animation wanted
+  std::optional<TempoStream> tempo;      // of the output
+  bool has_style = false;                // or a tempo of its own
+  std::vector<Pose> shown;               // at that tempo, where a report tells how it is performed
   std::optional<PreviewMoments> moments, skeletons;
   std::optional<Evaluator> evaluator;
   Latency latency;
@@ -40,7 +43,7 @@ render::SheetMoment source_moment(const RetargetedFrame& frame, double fps) {
   moment.frame = frame.index;
   moment.seconds = static_cast<double>(frame.index) / fps;
   moment.source = frame.scan.mesh;
-  moment.skeleton = render::skeleton_view(frame.result.source.joints);
+  moment.skeleton = render::skeleton_view(source_joints(frame.result));
   return moment;
 }
 
@@ -58,6 +61,14 @@ void tell_live(const RetargetedFrame& frame) {
   std::fflush(stdout);
 }
 
+void write(Running& job, const std::vector<PerformedFrame>& frames) {
+  for (const PerformedFrame& frame : frames) {
+    if (job.has_style && job.evaluator) job.shown.push_back(frame.pose);
+    if (job.output)
+      job.output->push({frame.pose, source_joints(frame), &frame.vertices, frame.observed.doubt_m});
+  }
+}
+
 void take_frame(Running& job, const RetargetedFrame& frame, bool live) {
   const PerformedFrame& result = frame.result;
   const double fps = job.source->fps();
@@ -66,21 +77,24 @@ void take_frame(Running& job, const RetargetedFrame& frame, bool live) {
     job.repeats.warn("frame " + std::to_string(frame.scan.number) +
                      " repeats the last pose: " + result.reason);
   job.doubt_m.push_back(result.observed.doubt_m);
-  if (job.output)
-    job.output->push({result.pose, result.source.joints, &result.vertices, result.observed.doubt_m});
+  write(job, job.tempo->push(result));
   if (job.moments && job.moments->wanted(frame.index))
     job.moments->add(frame.index, moment_of(frame, fps, job.character->target.mesh));
   if (job.skeletons && job.skeletons->wanted(frame.index))
     job.skeletons->add(frame.index, source_moment(frame, fps));
   if (job.evaluator)
-    job.evaluator->push({&result.vertices, &result.joints, &result.pose.local, &result.source.joints, nullptr,
-                         frame.scan.usable ? &frame.scan.mesh : nullptr, nullptr, result.limbs});
+    job.evaluator->push({&result.vertices, &result.joints, &result.pose.local, &source_joints(result),
+                         nullptr, frame.scan.usable ? &frame.scan.mesh : nullptr, nullptr, result.limbs});
   if (live) tell_live(frame);
 }
 
 Json report_of(const JobOptions& options, const Running& job) {
   Json report = report_header(nn::weights_folder(network_options(options.how)));
   report["engine"] = options.how.method.engine;
+  if (options.how.method.style.any())
+    report["style"] = {{"name", options.how.method.style.called()},
+                       {"strength", options.how.method.style.strength}};
+  if (options.tempo.any()) report["length"] = job.tempo->length();
   report["source"] = options.source.path;
   report["target"] = options.target.path;
   report["fps"] = job.source->fps();
@@ -88,7 +102,10 @@ Json report_of(const JobOptions& options, const Running& job) {
   report["flagged"] = job.retargeted->flagged();
   if (const std::vector<MadeFrames> made = made_frames(job.doubt_m); !made.empty())
     report["made_frames"] = to_json(made);
-  report["metrics"] = to_json(job.evaluator->metrics());
+  Metrics metrics = job.evaluator->metrics();
+  for (const auto& figure : style_figures(job.shown, job.character->target.joints, job.source->fps()))
+    metrics.push_back(figure);
+  report["metrics"] = to_json(metrics);
   report["ms"] = to_json(job.latency, 0.5);
   report["ms_p95"] = to_json(job.latency, 0.95);
   return report;
@@ -105,6 +122,8 @@ Running start(const JobOptions& options) {
   job.retargeter->set_target(job.character->target);
   job.retargeted = std::make_unique<RetargetedSource>(*job.source, *job.retargeter, options.source,
                                                       motion_space_loader(options.how));
+  job.has_style = options.how.method.style.any() || options.tempo.any();
+  job.tempo.emplace(options.tempo, job.character->target.joints, job.source->fps());
   if (!options.preview.empty()) job.moments.emplace(job.source->count());
   if (!options.skeletons.empty()) job.skeletons.emplace(job.source->count(), kSkeletonMoments);
   if (!options.report.empty()) job.evaluator.emplace(job.source->fps(), nullptr, &job.character->target.mesh);
@@ -119,6 +138,7 @@ Running start(const JobOptions& options) {
 
 void finish(const JobOptions& options, Running& job) {
   job.repeats.finish();
+  write(job, job.tempo->finish());
   if (job.output) {
     job.output->set_source_to_scan(job.source->to_file());
     log::info(options.out + ": " + sentence(job.output->finish()));
@@ -144,6 +164,7 @@ std::string path_of_person(const std::string& path, int id) {
 }  // namespace
 
 void run_job(const JobOptions& options) {
+  check(options.tempo);
   check_not_read(options.out, {options.source.path, options.source.motion, options.source.times,
                                options.source.markers, options.target.path});
   if (!options.out.empty()) check_export(options.out, export_format("", options.out));

@@ -14,6 +14,7 @@ struct JobOptions {
   SourceOptions source;
   TargetOptions target;
   MethodOptions how;
+  TempoChoice tempo;
   std::string out;              ///< its suffix is the format's; empty: none
   std::string report;           ///< .json; empty: none
   std::string preview;          ///< .png; empty: none

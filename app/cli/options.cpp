@@ -149,6 +149,14 @@ void add_method_options(CLI::App& command, MethodOptions& how) {
   command.add_flag("--predict", method.predict,
                    "frames that cannot be used go on as those before went, for half a second, instead of "
                    "repeating the last; they stay flagged");
+  command.add_option_function<std::string>(
+      "--style", [&method](const std::string& word) { method.style.choose(word); },
+      "how it is performed: a style that comes with the program (understudy style --list), or a "
+      "style's file");
+  command
+      .add_option("--style-strength", method.style.strength,
+                  "0: the source as it is, 1: the style, up to 1.5")
+      ->check(CLI::Range(kStyleStrengths.low, kStyleStrengths.high));
   for (const Proportion& one : kProportions)
     command.add_option("--" + dashed(one.name), method.*one.value, one.explanation)
         ->check(CLI::Range(one.range.low, one.range.high));
@@ -169,6 +177,19 @@ void add_method_options(CLI::App& command, MethodOptions& how) {
                      "weights file of the extractor in place of the folder's");
 }
 
+void add_tempo_options(CLI::App& command, TempoChoice& tempo) {
+  command.add_option(
+      "--tempo", tempo.tempo,
+      "body: so that jumps on the target fall as on the source; or how many times as long the result "
+      "lasts (default: off)");
+  command
+      .add_option(
+          "--delay", tempo.delay_s,
+          "with --tempo: as many frames come out as go in, at most so many seconds late; strokes catch up, "
+          "rests fall back")
+      ->check(CLI::Range(0.0, 10.0));
+}
+
 std::string turn_words(const BoneTurn& turn) {
   const Vec3 degrees = 180 / kPi * turn.axis_angle;
   return printed("%s=%g,%g,%g", kJointNames[turn.joint], static_cast<double>(degrees.x()),
@@ -184,6 +205,7 @@ nn::NetworkOptions network_options(const MethodOptions& how) {
   options.extractor = how.method.extractor;
   options.engine_file = how.engine_file;
   options.extractor_file = how.extractor_file;
+  options.style = how.method.style;
   return options;
 }
 

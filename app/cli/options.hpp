@@ -7,6 +7,7 @@
 #include "app/run/method.hpp"
 #include "app/run/source.hpp"
 #include "app/run/target_file.hpp"
+#include "app/run/tempo_choice.hpp"
 #include "retarget/editing/target_edits.hpp"
 #include "retarget/networks/networks.hpp"
 
@@ -33,6 +34,8 @@ struct MethodOptions {
   std::vector<BoneTurn> rest_pose;          ///< of the target
 };
 void add_method_options(CLI::App& command, MethodOptions& how);
+/// --tempo and --delay.
+void add_tempo_options(CLI::App& command, TempoChoice& tempo);
 /// As --rest-pose takes it: "left_shoulder=0,0,-30".
 std::string turn_words(const BoneTurn& turn);
 nn::NetworkOptions network_options(const MethodOptions& how);

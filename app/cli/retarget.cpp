@@ -24,6 +24,7 @@ Action declare_retarget(CLI::App& command) {
       ->required();
   add_target_options(command, job->target);
   add_method_options(command, job->how);
+  add_tempo_options(command, job->tempo);
   command.add_option("--out", job->out, "the animated target: " + export_suffixes());
   command.add_option("--report", job->report, "report as JSON");
   command.add_option("--preview", job->preview, "contact sheet as PNG");

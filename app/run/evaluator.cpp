@@ -152,6 +152,23 @@ std::map<std::string, double> Evaluator::surface_figures() const {
   return figures;
 }
 
+Metrics style_figures(const std::vector<Pose>& poses, const Joints& rest, double fps, bool has_legs) {
+  MetricSequence seen;
+  seen.has_style = true;
+  seen.has_legs = has_legs;
+  for (const Pose& pose : poses) {
+    seen.joints.push_back(forward_kinematics(rest, pose).joints);
+    seen.rotations.push_back(pose.local);
+  }
+  Metrics figures;
+  for (const Metric& metric : metric_table()) {
+    if (!(metric.needs & kNeedsStyle) || !is_known(metric, seen, {})) continue;
+    const double value = metric.of(seen, {}, fps);
+    if (std::isfinite(value)) figures.emplace_back(metric.key, value);
+  }
+  return figures;
+}
+
 void MeanMetrics::add(const std::string& key, double value) {
   const auto known =
       std::find_if(sums_.begin(), sums_.end(), [&](const auto& sum) { return sum.first == key; });

@@ -115,6 +115,10 @@ class Evaluator {
   RegisteredTruth registered_;
 };
 
+/// How a motion of this body is performed (style_metrics.hpp), at the tempo of its poses. `has_legs`: they
+/// were seen.
+Metrics style_figures(const std::vector<Pose>& poses, const Joints& rest, double fps, bool has_legs = true);
+
 /// Means of figures, in the order of their first appearance.
 class MeanMetrics {
  public:

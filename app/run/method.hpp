@@ -4,6 +4,7 @@
 #include <string>
 
 #include "retarget/base/fields.hpp"
+#include "retarget/pipeline/motion_style.hpp"
 #include "retarget/pipeline/performer.hpp"
 
 namespace understudy::app {
@@ -19,6 +20,7 @@ struct Method {
   RootMode path = RootMode::Scaled;                                    ///< across the floor
   float stride = 1, hip_height = 0, arm_reach = 0;                     ///< of the target, see kProportions
   bool predict = false;  ///< frames that cannot be used go on from those before, for half a second
+  StyleChoice style{};   ///< how it is performed
 };
 
 /// A setting of the target's proportions, by the same name in documents, commands and options.
@@ -64,6 +66,7 @@ FieldsOf<S, Method> fields(V& visit, S& method) {
   visit(MemberName("path", "root"), method.path, kRootNames);
   for (const Proportion& one : kProportions) visit(one.name, method.*one.value, one.range);
   visit("predict", method.predict);
+  visit("style", method.style);
 }
 
 /// What the other settings do, on the screen.

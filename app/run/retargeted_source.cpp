@@ -33,12 +33,13 @@ RetargetedSource::RetargetedSource(Source& source, Retargeter& retargeter, const
   source_.set_tools({[this] { return retargeter_.extractor(); }, motion_space, {}});
 }
 
-std::optional<RetargetedFrame> RetargetedSource::next(const std::optional<Joints>& known) {
+/// Reads a frame and lets it be styled. False at the end.
+bool RetargetedSource::read(const std::optional<Joints>& known) {
   const auto began = std::chrono::steady_clock::now();
   auto scan = source_.next();
-  if (!scan) return std::nullopt;
+  if (!scan) return false;
   if (scan->usable && !edits_.empty()) scan->mesh = understudy::apply(edits_, scan->mesh);
-  if (!known) cut_.apply(*scan, source_, frames_ + 1);
+  if (!known) cut_.apply(*scan, source_, ++read_);
   RetargetedFrame frame;
   frame.times.read = ms_since(began);
   const float dt = static_cast<float>(1 / source_.fps());
@@ -50,16 +51,35 @@ std::optional<RetargetedFrame> RetargetedSource::next(const std::optional<Joints
   if (!scan->usable) problem_ = scan->problem;
   if (!seen.warning.empty()) doubt_ = seen.warning;
   if (scan->usable && !scan->skeleton && !refusal(seen).empty()) ++unrecognised_;
-  frame.result = retargeter_.push(seen, dt);
-  frame.times.total = ms_since(began);
+  retargeter_.send(seen, dt);
   frame.times.extract = seen.extract_ms;
-  frame.times.transfer = frame.result.transfer_ms;
-  frame.times.deform = frame.result.deform_ms;
+  frame.times.total = ms_since(began);
   frame.scan = std::move(*scan);
-  frame.index = frames_++;
-  flagged_ += frame.result.flagged ? 1 : 0;
-  count_limbs(frame.result);
-  return frame;
+  waiting_.push_back(std::move(frame));
+  return true;
+}
+
+std::optional<RetargetedFrame> RetargetedSource::next(const std::optional<Joints>& known) {
+  for (;;) {
+    const auto began = std::chrono::steady_clock::now();
+    std::optional<PerformedFrame> result = retargeter_.next();
+    if (!result && ended_) return std::nullopt;
+    if (!result) {
+      ended_ = !read(known);
+      if (ended_) retargeter_.finish();
+      continue;
+    }
+    RetargetedFrame frame = std::move(waiting_.front());
+    waiting_.pop_front();
+    frame.result = std::move(*result);
+    frame.times.total += ms_since(began);
+    frame.times.transfer = frame.result.transfer_ms;
+    frame.times.deform = frame.result.deform_ms;
+    frame.index = frames_++;
+    flagged_ += frame.result.flagged ? 1 : 0;
+    count_limbs(frame.result);
+    return frame;
+  }
 }
 
 void RetargetedSource::count_limbs(const PerformedFrame& frame) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <deque>
 #include <optional>
 #include <string>
 
@@ -51,6 +52,7 @@ class RetargetedSource {
   void check_used() const;
 
  private:
+  bool read(const std::optional<Joints>& known);
   void count_limbs(const PerformedFrame& frame);
 
   Source& source_;
@@ -58,9 +60,11 @@ class RetargetedSource {
   std::string name_;
   ScanEdits edits_;  // none where scans are completed: they were applied before
   PersonCut cut_;
-  std::string doubt_;    // why the source may be no person; empty: nothing speaks against it
-  std::string problem_;  // of the last frame that could not be used
-  int64_t frames_ = 0, flagged_ = 0, unrecognised_ = 0;
+  std::string doubt_;                    // why the source may be no person; empty: nothing speaks against it
+  std::string problem_;                  // of the last frame that could not be used
+  std::deque<RetargetedFrame> waiting_;  // for their style
+  bool ended_ = false;
+  int64_t read_ = 0, frames_ = 0, flagged_ = 0, unrecognised_ = 0;
   std::array<int64_t, kFourLimbs.size()> seen_{};
   UnseenTold told_;
 };

@@ -9,6 +9,7 @@ namespace understudy::app {
 void add_document_commands(Commands& commands);
 void add_source_commands(Commands& commands);
 void add_take_commands(Commands& commands);
+void add_style_commands(Commands& commands);
 void add_playback_commands(Commands& commands);
 void add_view_commands(Commands& commands);
 void add_edit_commands(Commands& commands);
@@ -79,6 +80,15 @@ class Call : public ArgumentReader {
   Document& document;
   std::string label;  ///< of this run, for undo: "Remove adult"; empty: the command's
 };
+
+/// One setting of a take's style: "style" NAME|FILE|none, "style_strength" and its shares. False: it is
+/// another's.
+bool set_style(StyleChoice& style, const std::string& setting, const ArgumentReader& value);
+/// The settings that set_style knows.
+std::vector<std::string> style_settings();
+/// "edit.move tempo" and "edit.remove tempo".
+void move_tempo_mark(Call& c);
+void remove_tempo_mark(Call& c);
 
 /// Whether the open study is saved, or none is open. If not, asks first and goes on with `then`.
 bool no_unsaved_study(Studio& studio, const std::string& then);

@@ -106,7 +106,10 @@ inline std::vector<std::string> files_read_by(const Document& document) {
                                     document.truth,        document.bones.second.path};
   if (document.source.blend)
     for (const BlendPart& part : document.source.blend->parts) files.push_back(part.path);
-  for (const Take& take : document.takes) files.push_back(take.target.path);
+  for (const Take& take : document.takes) {
+    files.push_back(take.target.path);
+    files.push_back(take.method.style.file);
+  }
   return files;
 }
 

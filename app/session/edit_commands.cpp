@@ -273,7 +273,8 @@ void remove_loop(Call& c, PoseEdits& edits) {
 void remove_edit(Call& c) {
   const size_t kind = c.choice(0, "kind",
                                {"skeleton", "drags", "rotation", "rotations", "joint", "drags_of",
-                                "rotations_of", "limb", "people", "fill", "go_on", "loop"});
+                                "rotations_of", "limb", "people", "fill", "go_on", "loop", "tempo"});
+  if (kind == 12) return remove_tempo_mark(c);
   if (kind == 8) return remove_at(c.document.source.people, c, 1);
   if (kind == 5) return remove_drags_of(c, c.joint(1));
   if (kind == 6) return remove_rotations_of(c, c.joint(2));
@@ -369,7 +370,9 @@ void move_go_on(Call& c) {
 }
 
 void move_edit(Call& c) {
-  const size_t kind = c.choice(0, "kind", {"drags", "swap", "rotations", "skips", "people", "fill", "go_on"});
+  const size_t kind =
+      c.choice(0, "kind", {"drags", "swap", "rotations", "skips", "people", "fill", "go_on", "tempo"});
+  if (kind == 7) return move_tempo_mark(c);
   if (kind == 5) return move_fill(c);
   if (kind == 6) return move_go_on(c);
   if (kind == 0)
@@ -386,12 +389,12 @@ void add_rearrangement(Commands& commands) {
        "skeleton INDEX | drags FRAME | drags_of JOINT | rotation TAKE INDEX | rotations TAKE FRAME | "
        "rotations_of TAKE JOINT | limb TAKE FRAME JOINT | joint TAKE INDEX | people INDEX | fill TAKE INDEX "
        "| "
-       "go_on TAKE | loop TAKE"},
+       "go_on TAKE | loop TAKE | tempo TAKE INDEX"},
       remove_edit);
   commands.add_edit(
       {"edit.move", "Move an edit in time",
        "drags FRAME TO | swap INDEX TO [LAST] | rotations TAKE FRAME TO | skips TAKE FIRST LAST TO [LAST] | "
-       "people INDEX TO [LAST] | fill TAKE INDEX TO [LAST] | go_on TAKE TO [LAST]"},
+       "people INDEX TO [LAST] | fill TAKE INDEX TO [LAST] | go_on TAKE TO [LAST] | tempo TAKE INDEX TO"},
       move_edit);
 }
 

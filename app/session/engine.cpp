@@ -69,7 +69,9 @@ struct TakeWork {
   std::shared_ptr<PreparedCharacter> loaded;  // until it is the character
   std::shared_ptr<const PreparedCharacter> character;
   std::optional<Performer> performer;
+  std::optional<StyledStream> styled;  // none before the first frame
   bool failed = false;
+  size_t fed = 0;         // frames that the style has been given
   size_t done = 0;        // frames performed with the present settings
   size_t sent_times = 0;  // frames whose times have been sent
 };
@@ -133,6 +135,9 @@ struct Engine::Impl {
   bool step();
   void adopt(Plan wanted);
   void close_source();
+  static void start_anew(TakeWork& take);
+  bool has_work(TakeWork& take);
+  std::optional<TimedObservation> next_styled(TakeWork& take);
   void open();
   void adopt_take(TakeWork& take, const Plan::TakePlan& wanted);
   template <class Work>
@@ -232,10 +237,7 @@ void Engine::Impl::adopt(Plan wanted) {
     for (TakeWork& old : takes)
       if (old.plan.id == want.id) take = std::move(old);
     adopt_take(take, want);
-    if (skeleton_wanted != skeleton_is && take.performer) {
-      take.performer->restart();
-      take.done = 0;
-    }
+    if (skeleton_wanted != skeleton_is) start_anew(take);
     kept.push_back(std::move(take));
   }
   takes = std::move(kept);
@@ -259,7 +261,7 @@ void Engine::Impl::adopt_take(TakeWork& take, const Plan::TakePlan& wanted) {
     if (!bound) take.performer.reset();
     if (take.performer) take.performer->restart(options_of(wanted));
     take.failed = false;
-    take.done = 0;
+    start_anew(take);
   }
   take.plan = wanted;
   take.target_is = target_wanted;
@@ -277,9 +279,16 @@ void Engine::Impl::close_source() {
   doubt.clear();
   sent = 0;
   for (TakeWork& take : takes) {
-    if (take.performer) take.performer->restart();
-    take.done = take.sent_times = 0;
+    start_anew(take);
+    take.sent_times = 0;
   }
+}
+
+/// Its frames from the first one on.
+void Engine::Impl::start_anew(TakeWork& take) {
+  if (take.performer) take.performer->restart();
+  take.styled.reset();
+  take.fed = take.done = 0;
 }
 
 /// Does a little of what is left, the most urgent first. False: nothing is left.
@@ -293,8 +302,7 @@ bool Engine::Impl::step() {
   if (TakeWork* const take = next_to_prepare()) return of_take(*take, [&] { prepare(*take); });
   if (send_source()) return true;
   for (TakeWork& take : takes)
-    if (take.performer && take.done < stream_of(take.wants()).frames.size())
-      return of_take(take, [&] { perform(take); });
+    if (has_work(take)) return of_take(take, [&] { perform(take); });
   return read_frame();
 }
 
@@ -371,6 +379,7 @@ void Engine::Impl::prepare(TakeWork& take) {
   NetworkParts parts = NetworkParts::performers();
   const bool looked_at = !take.character && needs_extractor(take.plan.target, *take.loaded);
   parts.rest_extractor = looked_at;
+  parts.style = false;
   Networks networks = networks_of(method, parts);
   if (looked_at) networks.extractor = extractor_of(take.wants());
   if (!take.character)
@@ -380,7 +389,7 @@ void Engine::Impl::prepare(TakeWork& take) {
   Target target = take.character->target;
   target.joints = understudy::apply(take.plan.joints, target.joints);
   take.performer.emplace(target, networks.transfer, networks.deformer, options_of(take.plan));
-  take.done = 0;
+  start_anew(take);
   emit(TakeReady{take.plan.id, take.character, std::make_shared<const Target>(std::move(target)),
                  networks.deformer, binding_of(networks.deformer)});
 }
@@ -573,19 +582,53 @@ bool Engine::Impl::send_source() {
   return true;
 }
 
+/// Frames that a style lets come later come when more are read, or there are no more.
+bool Engine::Impl::has_work(TakeWork& take) {
+  const size_t count = stream_of(take.wants()).frames.size();
+  return take.performer && take.done < count && (take.fed < count || ended);
+}
+
+/// The next observation as the take's style has it; none where more must be read first.
+std::optional<TimedObservation> Engine::Impl::next_styled(TakeWork& take) {
+  const Whom whom = take.wants();
+  const std::vector<Seen>& frames = stream_of(whom).frames;
+  if (!take.styled) {
+    NetworkParts style;
+    style.style = true;
+    const bool any = take.plan.method.style.any();
+    take.styled.emplace(any ? networks_of(take.plan.method, style).style : nullptr,
+                        options_of(take.plan).filter);
+  }
+  bool finished = false;
+  while (take.done < frames.size()) {
+    std::optional<TimedObservation> next = take.styled->pop();
+    if (next || (!ended && take.fed == frames.size())) return next;
+    US_CHECK(!finished, "the style gives fewer frames than it was given");
+    if (take.fed < frames.size()) {
+      take.styled->push(edited(frames[take.fed], whom, take.fed), interval());
+      ++take.fed;
+    } else {
+      take.styled->finish();
+      finished = true;
+    }
+  }
+  return std::nullopt;
+}
+
 void Engine::Impl::perform(TakeWork& take) {
   const Whom whom = take.wants();
   const std::vector<Seen>& frames = stream_of(whom).frames;
   TakeFrames event;
   event.id = take.plan.id;
   event.first = static_cast<int>(take.done);
-  for (int n = 0; n < kReplayChunk && take.done < frames.size(); ++n, ++take.done) {
+  for (int n = 0; n < kReplayChunk; ++n, ++take.done) {
+    const std::optional<TimedObservation> styled = next_styled(take);
+    if (!styled) break;
     const Seen& seen = frames[take.done];
-    const Observation observation = edited(seen, whom, take.done);
-    const PerformedFrame result = take.performer->perform(observation, interval());
+    const PerformedFrame result = take.performer->perform(styled->seen, styled->dt);
     event.frames.push_back(kept(result));
     if (whom.person != plan.source.person)
-      event.seen.push_back(kept_source(seen, observation, result.source.joints));
+      event.seen.push_back(kept_source(seen, edited(seen, whom, take.done), event.frames.back().source));
     if (!result.warning.empty()) event.warning = result.warning;
     if (take.done < take.sent_times) continue;
     take.sent_times = take.done + 1;

@@ -42,7 +42,8 @@ Series blank_series(const std::string& key, size_t count) {
 std::vector<Series> joint_figures(const FigureInput& input) {
   const size_t shown = std::min(input.shown.poses.size(), input.joints.size()),
                count = std::min(shown, input.performed.size());
-  const MetricSequence seen = seen_in(input, count);
+  MetricSequence seen = seen_in(input, count);
+  seen.has_style = input.has_style;
   MetricSequence truth;
   if (input.truth)
     truth = {first_of(input.truth->joints, count),

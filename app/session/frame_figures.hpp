@@ -15,6 +15,7 @@ struct FigureInput {
   const SharedFrames<KeptFrame>& performed;  ///< with the source's joints as the take transferred them
   const SharedFrames<KeptSource>& source;    ///< may be shorter: then nothing is measured against it
   const Truth* truth = nullptr;              ///< may be null
+  bool has_style = false;                    ///< figures of how it is performed are wanted, too
 };
 
 /// Every metric of the table of single frames that joints and poses give, as far as its input is known. As

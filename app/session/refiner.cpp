@@ -8,6 +8,7 @@
 #include "retarget/base/error.hpp"
 #include "retarget/base/log.hpp"
 #include "retarget/base/worker.hpp"
+#include "retarget/pipeline/running_median.hpp"
 
 namespace understudy::app {
 
@@ -29,6 +30,14 @@ Motion motion_of(const SharedFrames<KeptFrame>& frames, float fps) {
   }
   if (!any_made) motion.doubt_m.clear();
   return motion;
+}
+
+/// Of the target's legs to those of who is performed.
+float leg_ratio(const RefineRequest& request) {
+  RunningMedian source;
+  for (const KeptFrame& frame : request.performed)
+    if (!frame.flagged) source.push(leg_length(frame.source));
+  return source.empty() ? 1.0f : leg_length(request.target->joints) / std::max(source.value(), 1e-4f);
 }
 
 }  // namespace
@@ -55,8 +64,14 @@ Refined refine(const RefineRequest& request, MotionSpace* space) {
   result.joints.reserve(result.shown.poses.size() + kRoomForNewFrames);
   for (const Pose& pose : result.shown.poses)
     result.joints.push_back(forward_kinematics(request.target->joints, pose).joints);
-  result.series =
-      joint_figures({result.shown, result.joints, request.performed, request.source, request.truth.get()});
+  if (request.edits.tempo && !result.joints.empty()) {
+    const std::string problem = failure_of([&] {
+      result.times = tempo_times(*request.edits.tempo, result.joints, request.fps, leg_ratio(request));
+    });
+    if (result.problem.empty()) result.problem = problem;
+  }
+  result.series = joint_figures({result.shown, result.joints, request.performed, request.source,
+                                 request.truth.get(), request.has_style || request.edits.tempo.has_value()});
   return result;
 }
 

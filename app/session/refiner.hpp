@@ -17,6 +17,7 @@ struct RefineRequest {
   std::shared_ptr<const Target> target;
   SharedFrames<KeptSource> source;
   std::shared_ptr<const Truth> truth;  ///< may be null
+  bool has_style = false;              ///< it is performed in a style
   bool all_there = true;               ///< false: more are performed yet, and nothing goes on beyond the last
 };
 
@@ -25,6 +26,7 @@ struct Refined {
   size_t performed = 0;  ///< frames that it was made of
   Motion shown;          ///< more than these where it goes on beyond the last
   std::vector<Joints> joints;
+  std::vector<double> times;   ///< as TakeState's
   std::vector<Series> series;  ///< NaN beyond the last
   EditCost cost;
   std::string problem;  ///< why the edits cannot be applied; the motion is then unedited

@@ -172,6 +172,20 @@ int shown_frame(const Session& session) {
   return shown_frame(session.playback, frame_count(session));
 }
 
+std::vector<MomentBetween> moments_of(const Session& session, size_t take) {
+  const TakeState& state = session.takes[take];
+  const std::vector<int> kept =
+      kept_frames(session.document.takes[take].pose_edits, ssize(state.shown.poses));
+  const bool all_known = state.times.size() == state.shown.poses.size();  // not while more are made
+  return understudy::moments_of(kept, all_known ? state.times : std::vector<double>(),
+                                static_cast<float>(session.source.fps));
+}
+
+double length_at(const TakeState& take, double fps, double frame) {
+  const auto t = static_cast<size_t>(std::max(frame, 0.0));
+  return t + 1 < take.times.size() ? (take.times[t + 1] - take.times[t]) * fps : 1;
+}
+
 Box shown_crop(const Session& session) {
   Box box = everything(session).value_or(Box{{-1, -0.1f, -1}, {1, 2.2f, 1}});
   const std::optional<Box>& crop = session.document.scan_edits.crop;

@@ -94,6 +94,8 @@ struct TakeState {
   LimbsSight limbs{};                        ///< the least that is seen of each limb so far
   Motion shown;                ///< after the user's edits of the result; may trail `performed` shortly
   std::vector<Joints> joints;  ///< of `shown`
+  /// of each frame of `shown` its moment in the take, seconds, where it has a tempo of its own; else empty
+  std::vector<double> times;
   /// Of each of the motion space's answers to what is filled or goes on, as of `joints`; empty: there is one.
   std::vector<std::vector<Joints>> alternatives;
   std::vector<Series> series;  ///< as many values as frames shown
@@ -240,6 +242,11 @@ std::optional<LogLine> status_line(const Session& session);
 void mend(Session& session, const std::string& command);
 /// The frame shown, -1 without one.
 int shown_frame(const Session& session);
+/// What is shown of a take, in order, at the source's rate: without what trim and skip leave out, at its
+/// tempo.
+std::vector<MomentBetween> moments_of(const Session& session, size_t take);
+/// How long a frame of a take lasts against the source's: its tempo there.
+double length_at(const TakeState& take, double fps, double frame);
 /// The crop box as it is shown: open sides, and all of them without a crop, around all points of all frames
 /// so far (of a skeletal motion: around its people).
 Box shown_crop(const Session& session);

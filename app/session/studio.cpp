@@ -349,7 +349,9 @@ void Studio::tick(double seconds, double played) {
   Playback trimmed = session_.playback;
   if (edits.trim && trimmed.in < 0) trimmed.in = edits.trim->first;
   if (edits.trim && trimmed.out < 0) trimmed.out = edits.trim->last;
-  advance(trimmed, played, session_.source.fps, count, edits.skip);
+  const double length =
+      takes ? length_at(session_.takes[session_.selected_take], session_.source.fps, trimmed.frame) : 1;
+  advance(trimmed, played, session_.source.fps / length, count, edits.skip);
   // A new target, and a scan that is cropped, start without frames: the place is kept until it comes there.
   const auto& source = session_.source;
   const int64_t known =

@@ -333,6 +333,7 @@ void Studio::take_in_refined() {
                         refined.shown.poses.size() != take->shown.poses.size() ||
                         !std::equal(take->joints.begin(), take->joints.end(), refined.joints.begin());
     take->cost = refined.cost;
+    take->times = std::move(refined.times);
     merge_series(take->series, std::move(refined.series));
     background_->applied[refined.take_id].refined_frames = count;
     if (!edited || count > take->performed.size()) continue;
@@ -372,7 +373,8 @@ void Studio::refine_dirty() {
       const size_t k = take - session_.takes.data();
       b.refiner.request({*id, take->performed, static_cast<float>(session_.source.fps),
                          session_.document.takes[k].pose_edits, take->target, performed_by(session_, k),
-                         truth_of(session_, k), is_performed(session_, k)});
+                         truth_of(session_, k), session_.document.takes[k].method.style.any(),
+                         is_performed(session_, k)});
       applied.goes_on = session_.document.takes[k].pose_edits.go_on && is_performed(session_, k);
       applied.refined_at = session_.time;
       applied.measured = false;
@@ -410,6 +412,7 @@ struct Measuring {
   std::vector<Series> series;
   Metrics metrics;
   std::shared_ptr<MotionBlender> blender;
+  std::vector<Pose> styled;  // at the take's tempo, where it has one or a style
 };
 
 /// Of the frames that were performed; beyond them there is nothing to measure against.
@@ -439,6 +442,8 @@ void evaluate_all(Measuring& m, JobControl& control) {
         series.values[t] = static_cast<float>(found->second);
   }
   m.metrics = evaluator.metrics();
+  for (const auto& figure : style_figures(m.styled, m.character->target.joints, m.shown.fps))
+    m.metrics.push_back(figure);
 }
 
 }  // namespace
@@ -458,6 +463,11 @@ void Studio::measure(size_t k) {
   if (m->kept.size() < std::min(m->shown.poses.size(), m->source_joints.size())) return;
   m->character = take.character;
   m->deformer = take.deformer;
+  const Take& of = session_.document.takes[k];
+  if (of.method.style.any() || of.pose_edits.tempo)
+    for (const MomentBetween& moment : moments_of(session_, k))
+      m->styled.push_back(pose_between(take.shown.poses[static_cast<size_t>(moment.before)],
+                                       take.shown.poses[static_cast<size_t>(moment.after)], moment.share));
   m->truth = truth_of(session_, k);
   const int64_t generation = take.generation;
   Background::Applied& applied = background_->applied[id];

@@ -149,8 +149,10 @@ void set_method(Method& method, const std::string& key, const std::string& value
   std::vector<std::string> settings = switch_names();
   settings.insert(settings.begin(), {"engine", "extractor", "offsets", "path", "predict"});
   for (const Proportion& one : kProportions) settings.push_back(one.name);
+  for (const std::string& one : style_settings()) settings.push_back(one);
   ArgumentReader({key}).one_of(0, "setting", settings);
   const ArgumentReader words({value});
+  if (set_style(method.style, key, words)) return;
   if (key == "engine")
     method.engine = words.one_of(0, "engine", names_of(engines()));
   else if (key == "extractor")

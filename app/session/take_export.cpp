@@ -50,13 +50,14 @@ std::string clip_name(const Session& session, const Take& take) {
 }
 
 void add_clip(ExportInput& out, const Session& session, size_t k, const std::string& name) {
-  const Take& take = session.document.takes[k];
   const TakeState& state = session.takes[k];
   CharacterClip clip{name, session.source.fps, {}};
   std::vector<float> doubt_m;
-  for (const int frame : kept_frames(take.pose_edits, state.shown.poses.size())) {
-    const size_t t = frame;
-    clip.poses.push_back(state.shown.poses[t]);
+  for (const MomentBetween& moment : moments_of(session, k)) {
+    const size_t t = moment.share < 0.5f ? moment.before : moment.after;
+    const auto& poses = state.shown.poses;
+    clip.poses.push_back(pose_between(poses[static_cast<size_t>(moment.before)],
+                                      poses[static_cast<size_t>(moment.after)], moment.share));
     if (t < state.shown.doubt_m.size()) doubt_m.push_back(state.shown.doubt_m[t]);
     const size_t seen = std::min(t + 1, state.performed.size());  // beyond the last it stays
     out.source_joints.push_back(seen > 0 ? state.performed[seen - 1].source : Joints::Zero());

@@ -363,6 +363,7 @@ void Application::write_marks() {
   std::ostringstream text;
   for (const auto& [key, value] : facts(session())) text << join_line("fact", {key, value}) << '\n';
   text << join_line("fact", {"focus", focus()}) << '\n';
+  text << join_line("fact", {"pointer", gui_->pointer()}) << '\n';
   for (std::string& shown : shown_texts(session())) {
     std::replace(shown.begin(), shown.end(), '\n', ' ');
     text << join_line("text", {shown}) << '\n';

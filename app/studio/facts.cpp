@@ -55,6 +55,39 @@ std::string looped(const Session& session) {
   return std::to_string(take->pose_edits.loop->first) + "-" + std::to_string(take->pose_edits.loop->last);
 }
 
+/// Of the selected take's style its name and strength, "child 0.80"; empty: it has none.
+std::string style(const Session& session) {
+  const Take* const take = at_or_null(session.document.takes, session.selected_take);
+  if (take == nullptr || take->method.style.called().empty()) return "";
+  return file_name(take->method.style.called()) +
+         printed(" %.2f", static_cast<double>(take->method.style.strength));
+}
+
+/// Of the selected take, "off", "body", or how many times as long it lasts: "0.80".
+std::string tempo(const Session& session) {
+  const Take* const take = at_or_null(session.document.takes, session.selected_take);
+  if (take == nullptr || !take->pose_edits.tempo) return "off";
+  const TempoEdit& edit = *take->pose_edits.tempo;
+  return edit.by == TempoBy::Body ? "body" : printed("%.2f", static_cast<double>(edit.length));
+}
+
+/// Of the selected take the frames whose moments are held or shifted, "12+0.25 60+0.00".
+std::string tempo_marks(const Session& session) {
+  const Take* const take = at_or_null(session.document.takes, session.selected_take);
+  std::string text;
+  if (take != nullptr && take->pose_edits.tempo)
+    for (const TempoMark& mark : take->pose_edits.tempo->marks)
+      append_item(text, std::to_string(mark.frame) + printed("%+.2f", static_cast<double>(mark.later_s)),
+                  " ");
+  return text;
+}
+
+/// Seconds that the selected take lasts at its tempo; empty: as its source.
+std::string lasts(const Session& session) {
+  const TakeState* const take = at_or_null(session.takes, session.selected_take);
+  return take == nullptr || take->times.empty() ? "" : printed("%.2f", take->times.back());
+}
+
 /// Of the selected take the seconds, "1.5"; empty: it ends with its last captured frame.
 std::string goes_on(const Session& session) {
   const Take* const take = at_or_null(session.document.takes, session.selected_take);
@@ -123,6 +156,10 @@ std::vector<std::pair<std::string, std::string>> facts(const Session& session) {
       {"fills", fills(session)},
       {"blend", blend(session)},
       {"goes_on", goes_on(session)},
+      {"style", style(session)},
+      {"tempo", tempo(session)},
+      {"tempo_marks", tempo_marks(session)},
+      {"lasts", lasts(session)},
       {"loop", looped(session)},
       {"map_steps", std::to_string(session.map.map ? session.map.map->size() : 0)},
       {"map_like", count(session.map.like.size())},

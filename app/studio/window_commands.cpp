@@ -122,11 +122,15 @@ void save_picture(Call& c) {
 /// The frames that play, without those left out, in order.
 std::vector<int> frames_of(const Session& session) {
   const FrameRange range = play_range(session.playback, frame_count(session));
-  PoseEdits edits;
-  if (!session.document.takes.empty()) edits = session.document.takes[session.selected_take].pose_edits;
   std::vector<int> frames;
-  for (const int frame : kept_frames(edits, frame_count(session)))
+  const auto add = [&](int frame) {
     if (frame >= range.first && frame <= range.last) frames.push_back(frame);
+  };
+  if (session.document.takes.empty())
+    for (int frame = 0; frame < frame_count(session); ++frame) add(frame);
+  else
+    for (const MomentBetween& moment : moments_of(session, session.selected_take))
+      add(moment.share < 0.5f ? moment.before : moment.after);
   return frames;
 }
 

@@ -90,7 +90,7 @@ void turn(const TurnEdit& edit, Motion& motion) {
 
 bool PoseEdits::empty() const {
   return fill.empty() && !go_on && rotate.empty() && !smooth && !raise && !pin && !turn && !loop && !trim &&
-         skip.empty();
+         skip.empty() && !tempo;
 }
 
 EditedBody EditedBody::from(const Points& rest_vertices, const Joints& rest_joints) {

@@ -9,6 +9,7 @@
 #include "retarget/base/fields.hpp"
 #include "retarget/editing/pose_fill.hpp"
 #include "retarget/editing/pose_loop.hpp"
+#include "retarget/editing/tempo_edit.hpp"
 #include "retarget/pipeline/root_path.hpp"
 #include "retarget/skeleton/foot_contact.hpp"
 #include "retarget/skeleton/skeleton.hpp"
@@ -104,6 +105,7 @@ struct PoseEdits {
   std::optional<LoopEdit> loop;
   std::optional<Trim> trim;
   std::set<int> skip;  ///< frames left out, original numbers
+  std::optional<TempoEdit> tempo;
   bool empty() const;
 };
 template <class V, class S>
@@ -118,6 +120,7 @@ FieldsOf<S, PoseEdits> fields(V& visit, S& edits) {
   visit("loop", edits.loop);
   visit("trim", edits.trim);
   visit("skip", edits.skip, kFrameNumbers);
+  visit("tempo", edits.tempo);
 }
 
 /// The target in T-pose, as far as edits of its poses must know it.

@@ -4,6 +4,8 @@
 #include <iterator>
 #include <limits>
 
+#include "retarget/metrics/style_metrics.hpp"
+
 namespace understudy {
 
 namespace {
@@ -244,6 +246,27 @@ std::vector<Metric> rows_of_one() {
       {"lowest_gap_mm", "Lowest vertex off the scan's", "mm", 1, each, lower}};
 }
 
+/// How a motion is performed.
+std::vector<Metric> rows_of_styles() {
+  using S = const Sequence&;
+  constexpr auto neither = Better::Neither;
+  constexpr unsigned joints = kNeedsStyle | kNeedsJoints;
+  return {{"body_sway_deg", "Body sway", "deg", 1, false, neither, joints,
+           [](S p, S, double fps) { return body_sway_deg(p.joints, fps); }},
+          {"head_turn", "Head turning", "deg/s", 1, true, neither, kNeedsStyle | kNeedsRotations,
+           [](S p, S, double fps) { return head_turn_deg_s(p.rotations, fps); }, 1},
+          {"pelvis_speed", "Speed of the pelvis", "legs/s", 3, true, neither, joints,
+           [](S p, S, double fps) { return pelvis_speed_legs(p.joints, fps); }, 1},
+          {"rise_s", "Rise of a gesture", "s", 3, false, neither, joints,
+           [](S p, S, double fps) { return rise_s(p.joints, fps); }},
+          {"flight_gravity", "Gravity in flights", "m/s\u00b2", 2, false, neither, joints | kNeedsLegs,
+           [](S p, S, double fps) { return flight_gravity(p.joints, fps); }},
+          {"cycle_s", "Step cycle", "s", 3, false, neither, joints | kNeedsLegs,
+           [](S p, S, double fps) { return cycle_s(p.joints, fps); }},
+          {"stance_slide", "Slide of standing feet", "m/s", 3, false, Better::Lower, joints | kNeedsLegs,
+           [](S p, S, double fps) { return stance_slide(p.joints, fps); }}};
+}
+
 }  // namespace
 
 const std::vector<Metric>& metric_table() {
@@ -252,6 +275,7 @@ const std::vector<Metric>& metric_table() {
     for (const Metric& row : rows_of_scenes()) all.push_back(row);
     for (const Metric& row : rows_of_gaps()) all.push_back(row);
     for (const Metric& row : rows_of_rigs()) all.push_back(row);
+    for (const Metric& row : rows_of_styles()) all.push_back(row);
     return all;
   }();
   return table;
@@ -272,7 +296,8 @@ bool is_known(const Metric& metric, const MetricSequence& p, const MetricSequenc
   const auto there = [&](const auto& in_p, const auto& in_q) {
     return !in_p.empty() && (!needs(kNeedsTruth) || !in_q.empty());
   };
-  return (!needs(kNeedsLegs) || p.has_legs) && (!needs(kNeedsJoints) || there(p.joints, q.joints)) &&
+  return (!needs(kNeedsStyle) || p.has_style) && (!needs(kNeedsLegs) || p.has_legs) &&
+         (!needs(kNeedsJoints) || there(p.joints, q.joints)) &&
          (!needs(kNeedsRotations) || there(p.rotations, q.rotations)) &&
          (!needs(kNeedsSource) || there(p.source_joints, q.source_joints)) &&
          (!needs(kNeedsRaw) || there(p.raw_joints, q.source_joints)) &&

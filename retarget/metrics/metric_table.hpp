@@ -18,6 +18,7 @@ struct MetricSequence {
   std::vector<float> confidence;            ///< of the extraction, 0..1
   std::vector<SeenJoints> visibility = {};  ///< of the source's joints
   bool has_legs = true;                     ///< false: the source's legs are not seen in half of the frames
+  bool has_style = false;                   ///< whether a style or a tempo is of interest
 };
 
 /// What a metric looks at. It is asked only where all of that is known, for at least one frame.
@@ -29,10 +30,11 @@ enum MetricNeeds : unsigned {
   kNeedsConfidence = 16,
   kNeedsTruth = 32,  ///< the truth of the same, too
   kNeedsVisibility = 64,
-  kNeedsScene = 128,  ///< the truth of a scene: who is in it, and whose each point is
-  kNeedsLegs = 256,   ///< seen
-  kNeedsGaps = 512,   ///< frames that were not known, and their truth
-  kNeedsRig = 1024,   ///< the true rig of a body of whatever kind
+  kNeedsScene = 128,   ///< the truth of a scene: who is in it, and whose each point is
+  kNeedsLegs = 256,    ///< seen
+  kNeedsGaps = 512,    ///< frames that were not known, and their truth
+  kNeedsRig = 1024,    ///< the true rig of a body of whatever kind
+  kNeedsStyle = 2048,  ///< it is asked how the motion is performed
 };
 
 enum class Better { Lower, Higher, Neither };

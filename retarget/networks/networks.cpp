@@ -17,6 +17,7 @@
 #include "retarget/networks/network_deformer.hpp"
 #include "retarget/networks/plugin_api.hpp"
 #include "retarget/pipeline/method_table.hpp"
+#include "retarget/style/load_style.hpp"
 
 namespace understudy::nn {
 namespace {
@@ -130,7 +131,7 @@ Networks load_networks(const NetworkOptions& options, const NetworkParts& parts)
   const bool dense = options.extractor == "dense";
   const MethodChoice& engine = engine_named(options.engine);
   // The plug-in is for what needs LibTorch.
-  const NetworkParts left{parts.extractor && !dense, false, parts.transfer && !engine.make, false};
+  const NetworkParts left{parts.extractor && !dense, false, parts.transfer && !engine.make, false, false};
   Networks networks;
   if (left.extractor || left.transfer) networks = plugin().load(options, folder, left);
   if (parts.extractor && dense) networks.extractor = load_dense(options, folder);
@@ -139,6 +140,7 @@ Networks load_networks(const NetworkOptions& options, const NetworkParts& parts)
   if (parts.transfer && engine.make) networks.transfer = engine.make();
   if (parts.deformer)
     networks.deformer = load_network_deformer(folder + "/deformation.weights", options.offsets);
+  if (parts.style && options.style.any()) networks.style = load_style(options.style);
   return networks;
 }
 

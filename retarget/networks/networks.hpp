@@ -9,6 +9,7 @@
 #include "retarget/pipeline/interfaces.hpp"
 #include "retarget/pipeline/motion_coder.hpp"
 #include "retarget/pipeline/motion_space.hpp"
+#include "retarget/pipeline/motion_style.hpp"
 
 namespace understudy::nn {
 
@@ -24,6 +25,7 @@ struct NetworkOptions {
   bool near = true;                         ///< of "dense": refine limbs and head on crops of the scan
   std::string extractor = "dense";          ///< one of extractors()
   std::string engine_file, extractor_file;  ///< weights in place of the folder's; empty: the folder's
+  StyleChoice style{};                      ///< how a motion is performed
 };
 
 /// The networks with trained weights, as many as asked for; which extractor has none for T-poses leaves that

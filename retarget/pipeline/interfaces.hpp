@@ -117,10 +117,12 @@ class Deformer {
 
 /// Which networks are wanted: each costs time and memory to load.
 struct NetworkParts {
-  bool extractor = false, rest_extractor = false, transfer = false, deformer = false;
-  static NetworkParts all() { return {true, true, true, true}; }
-  static NetworkParts performers() { return {false, false, true, true}; }
+  bool extractor = false, rest_extractor = false, transfer = false, deformer = false, style = false;
+  static NetworkParts all() { return {true, true, true, true, true}; }
+  static NetworkParts performers() { return {false, false, true, true, true}; }
 };
+
+class MotionStyle;
 
 /// The networks that the pipeline runs on. Those that are not asked for are null.
 struct Networks {
@@ -128,6 +130,7 @@ struct Networks {
   std::shared_ptr<SkeletonExtractor> rest_extractor;  ///< trained on T-poses, for targets
   std::shared_ptr<MotionTransfer> transfer;
   std::shared_ptr<Deformer> deformer;
+  std::shared_ptr<MotionStyle> style;  ///< null where none was chosen, too
 };
 
 }  // namespace understudy

@@ -6,6 +6,7 @@
 
 #include "retarget/pipeline/body_girth.hpp"
 #include "retarget/pipeline/interfaces.hpp"
+#include "retarget/pipeline/unseen_limbs.hpp"
 
 namespace understudy {
 
@@ -18,6 +19,13 @@ struct Observation : Extraction {
   int64_t points = 0;  ///< in the scan
   float doubt_m = 0;   ///< how far the skeleton may be off where it was made, as Motion's; 0: it was seen
   double extract_ms = 0;
+  /// What it was before a style changed how it moves; none: no style did.
+  struct Unstyled {
+    Joints joints = Joints::Zero();  ///< repaired and smoothed, world, metres
+    LimbsSight limbs{};              ///< what is seen of the limbs,
+    Standing feet{};                 ///< and which feet are
+  };
+  std::optional<Unstyled> unstyled;
 };
 
 /// A frame without a skeleton, of no confidence.
@@ -29,16 +37,5 @@ bool finite(const Rotations& rotations);
 /// Why an observation is not to be performed; empty: it is. The one place that decides what is believed:
 /// numbers that are finite, and a mean confidence of at least 0.08 in the joints that are seen.
 std::string refusal(const Observation& seen);
-
-/// A stage from skeleton to skeleton: changes how the source moves before anything of the target is asked.
-/// Looks only back, one thread at a time.
-class MotionStyle : public Remembering {
- public:
-  /// The source starts anew.
-  virtual void reset() = 0;
-  /// The frame to be performed in the place of this one, dt seconds after the one before. Only believed
-  /// frames come. Throws Error where it cannot be; the frame is then refused.
-  virtual Observation push(Observation seen, float dt) = 0;
-};
 
 }  // namespace understudy

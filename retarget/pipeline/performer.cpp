@@ -33,7 +33,6 @@ Performer::Performer(const RetargetOptions& options)
            FootLock(options.feet),
            ArmReach(options.arm_reach),
            HandContacts(),
-           {},
            {}} {}
 
 Performer::Performer(Target target, std::shared_ptr<MotionTransfer> transfer,
@@ -52,13 +51,7 @@ Performer::Performer(Target target, std::shared_ptr<MotionTransfer> transfer,
   restart();
 }
 
-void Performer::add_style(std::unique_ptr<MotionStyle> style) {
-  style->reset();
-  styles_.push_back(std::move(style));
-}
-
 void Performer::restart() {
-  for (const auto& style : styles_) style->reset();
   now_.unseen.reset();
   now_.filter.reset();
   now_.feet.reset();
@@ -109,12 +102,9 @@ PerformedFrame Performer::perform(const Observation& seen, float dt) {
 /// All stages of a frame: the source's, then the target's, where there is one.
 void Performer::run(PerformedFrame& frame) {
   using Stage = void (*)(Performer&, PerformedFrame&);
-  static constexpr Stage kStyle = [](Performer& p, PerformedFrame& f) {
-    for (const auto& style : p.styles_) f.source = style->push(std::move(f.source), p.waited_);
-  };
   static constexpr Stage kUnseen = [](Performer& p, PerformedFrame& f) {
     static_cast<Extraction&>(f.source) = p.now_.unseen.push(f.source, p.waited_);
-    f.limbs = p.now_.unseen.limbs();
+    f.limbs = f.source.unstyled ? f.source.unstyled->limbs : p.now_.unseen.limbs();
   };
   static constexpr Stage kFilter = [](Performer& p, PerformedFrame& f) {
     static_cast<Extraction&>(f.source) = p.now_.filter.push(f.source, p.waited_);
@@ -132,7 +122,7 @@ void Performer::run(PerformedFrame& frame) {
   };
   static constexpr Stage kFeet = [](Performer& p, PerformedFrame& f) {
     if (!p.options_.lock_feet) return;
-    const Standing seen = p.now_.unseen.feet();
+    const Standing seen = f.source.unstyled ? f.source.unstyled->feet : p.now_.unseen.feet();
     if (seen[0] || seen[1]) f.pose = p.now_.root.plant(f.pose, p.waited_);
     if (p.options_.root.mode != RootMode::Scaled) return;
     f.pose = p.now_.feet.push(f.pose, p.target_.joints, p.waited_, f.source.joints, seen);
@@ -154,7 +144,7 @@ void Performer::run(PerformedFrame& frame) {
     p.watch(f);
   };
   const auto began = std::chrono::steady_clock::now();
-  for (const Stage stage : {kStyle, kUnseen, kFilter}) stage(*this, frame);
+  for (const Stage stage : {kUnseen, kFilter}) stage(*this, frame);
   if (transfer_)
     for (const Stage stage : {kTransfer, kRoot, kSteps, kFeet, kArms, kHands, kSkin}) stage(*this, frame);
   frame.transfer_ms = ms_since(began) - frame.deform_ms;
@@ -163,14 +153,11 @@ void Performer::run(PerformedFrame& frame) {
 Performer::Memory Performer::remembered() const {
   Memory memory = now_;
   if (transfer_) memory.transfer = transfer_->memory();
-  for (const auto& style : styles_) memory.styles.push_back(style->memory());
   return memory;
 }
 
 void Performer::put_back(Memory memory) {
   if (transfer_) transfer_->restore(std::exchange(memory.transfer, {}));
-  for (size_t s = 0; s < styles_.size(); ++s) styles_[s]->restore(memory.styles[s]);
-  memory.styles.clear();
   now_ = std::move(memory);
 }
 
@@ -183,6 +170,7 @@ PerformedFrame Performer::repeat(PerformedFrame frame, std::string reason) {
   frame.standing = last_.standing;
   frame.limbs = last_.limbs;
   frame.source.joints = last_.source;
+  frame.source.unstyled.reset();
   if (transfer_) finish(frame);
   return frame;
 }
@@ -206,9 +194,13 @@ void Performer::watch(PerformedFrame& frame) {
   log::warn(frame.warning);
 }
 
+const Joints& source_joints(const PerformedFrame& frame) {
+  return frame.source.unstyled ? frame.source.unstyled->joints : frame.source.joints;
+}
+
 KeptFrame kept(const PerformedFrame& frame) {
-  return {frame.pose,     frame.source.joints, frame.flagged,
-          frame.standing, frame.limbs,         frame.observed.doubt_m};
+  return {frame.pose,     source_joints(frame), frame.flagged,
+          frame.standing, frame.limbs,          frame.observed.doubt_m};
 }
 
 }  // namespace understudy

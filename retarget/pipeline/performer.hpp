@@ -41,8 +41,8 @@ struct PerformedFrame {
   Joints joints = Joints::Zero();  ///< of the target, world
   Pose pose;                       ///< of the target: local rotations and root
   Observation observed;            ///< as it came; the doubt is of what stands in where it is predicted
-  Observation source;              ///< styled, repaired and smoothed: what was transferred; where
-                                   ///< flagged that of the last good frame
+  Observation source;              ///< repaired and smoothed: what was transferred; where flagged that of
+                                   ///< the last good frame
   Confidence confidence = Confidence::Zero();  ///< of the observed joints; zero where flagged
   Standing standing{};                         ///< the feet that are held on the floor
   LimbsSight limbs{};                          ///< what is seen of the limbs; the rest stands or hangs still
@@ -55,13 +55,15 @@ struct PerformedFrame {
 /// What is kept of a past frame: everything else can be made again from it. Under 2 kB.
 struct KeptFrame {
   Pose pose;
-  Joints source = Joints::Zero();  ///< joints of the source, repaired and smoothed
+  Joints source = Joints::Zero();  ///< joints of the source, repaired and smoothed, before any style
   bool flagged = false;
   Standing standing{};  ///< the feet that are held on the floor
   LimbsSight limbs{};   ///< what is seen of the limbs
   float doubt_m = 0;    ///< as observed.doubt_m
 };
 KeptFrame kept(const PerformedFrame& frame);
+/// The source's joints, repaired and smoothed, before any style; where flagged those of the last good frame.
+const Joints& source_joints(const PerformedFrame& frame);
 
 /// One target that performs. Frame i is finished before frame i + 1 is read, nothing looks into the future
 /// and memory does not grow. One thread at a time.
@@ -73,8 +75,6 @@ class Performer {
   /// and contacts (RetargetOptions) no deformer is needed.
   Performer(Target target, std::shared_ptr<MotionTransfer> transfer, std::shared_ptr<Deformer> deformer,
             const RetargetOptions& options = {});
-  /// Styles work in the order in which they were added, before all else.
-  void add_style(std::unique_ptr<MotionStyle> style);
   /// Starts the source anew.
   void restart();
   /// The same with other options; the target stays bound.
@@ -98,8 +98,7 @@ class Performer {
     FootLock feet;
     ArmReach arms;
     HandContacts hands;
-    std::any transfer;             // copies: the engine and
-    std::vector<std::any> styles;  // the styles keep their own
+    std::any transfer;  // a copy: the engine keeps its own
   };
 
   Memory remembered() const;
@@ -113,7 +112,6 @@ class Performer {
   Target target_;
   std::shared_ptr<MotionTransfer> transfer_;  // null: no target
   std::shared_ptr<Deformer> deformer_;
-  std::vector<std::unique_ptr<MotionStyle>> styles_;
   Memory now_;
   Rotations copied_;  // local, of this frame, before its limbs were placed
   TornSurface surface_;

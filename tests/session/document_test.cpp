@@ -134,6 +134,12 @@ const Changes& document_changes() {
       TAKE(method.hip_height = 0),
       TAKE(method.arm_reach = 0),
       TAKE(method.predict = false),
+      TAKE(method.style.name = "child"),
+      TAKE(method.style.file.clear()),
+      TAKE(method.style.strength = 1),
+      TAKE(method.style.posture = 1),
+      TAKE(method.style.size = 1),
+      TAKE(method.style.liveliness = 1),
       TAKE(target_edits.joints.pop_back()),
       TAKE(target_edits.joints[0].joint = Head),
       TAKE(target_edits.joints[0].position.x() = 0),
@@ -197,6 +203,16 @@ const Changes& document_changes() {
       POSES(trim->first = 0),
       POSES(trim->last = 9),
       POSES(skip.insert(6)),
+      POSES(tempo.reset()),
+      POSES(tempo->by = TempoBy::Body),
+      POSES(tempo->length = 1),
+      POSES(tempo->anticipation = 1),
+      POSES(tempo->stroke = 1),
+      POSES(tempo->recovery = 1),
+      POSES(tempo->spread = 0),
+      POSES(tempo->marks.pop_back()),
+      POSES(tempo->marks[0].frame = 13),
+      POSES(tempo->marks[0].later_s = 0),
   };
   return changes;
 }
@@ -224,13 +240,18 @@ const Changes& document_changes() {
   [[maybe_unused]] const auto& [target_path, target_betas, target_import, target_forward, target_rig,
                                 target_bones, not_a_person] = TargetOptions();
   [[maybe_unused]] const auto& [engine, extractor, near, offsets, swaps, smooth, lengths, feet, contacts,
-                                root, stride, hip_height, arm_reach, predict] = Method();
+                                root, stride, hip_height, arm_reach, predict, style] = Method();
+  [[maybe_unused]] const auto& [style_name, style_file, style_strength, posture, size, liveliness] =
+      StyleChoice();
+  [[maybe_unused]] const auto& [by, length, anticipation, stroke, recovery, unlike, tempo_marks] =
+      TempoEdit();
+  [[maybe_unused]] const auto& [mark_frame, later] = TempoMark();
   [[maybe_unused]] const auto& [moves, weights, rest_pose] = TargetEdits();
   [[maybe_unused]] const auto& [turned_joint, axis_angle] = BoneTurn();
   [[maybe_unused]] const auto& [moved, position, mirror] = JointMove();
   [[maybe_unused]] const auto& [vertex, rows, places, of] = WeightRows();
-  [[maybe_unused]] const auto& [fill, go_on, rotate, smoothing, floors, pin, heading, looped, trim, skip] =
-      PoseEdits();
+  [[maybe_unused]] const auto& [fill, go_on, rotate, smoothing, floors, pin, heading, looped, trim, skip,
+                                tempo] = PoseEdits();
   [[maybe_unused]] const auto& [seconds, on_learned, on_variation] = GoOnEdit();
   [[maybe_unused]] const auto& [loop_first, loop_last, seam, loop_learned] = LoopEdit();
   [[maybe_unused]] const auto& [fill_first, fill_last, fill_learned, fill_variation] = FillEdit();

@@ -39,6 +39,7 @@ PoseEdits pose_edits() {
   edits.loop = LoopEdit{20, 47, 0.25f, 0.75f};
   edits.trim = Trim{3, 95};
   edits.skip = {4, 50, 51};
+  edits.tempo = TempoEdit{TempoBy::Number, 0.8f, 1.1f, 0.87f, 1.2f, 0.036f, {{12, 0.25f}, {60, -0.125f}}};
   return edits;
 }
 
@@ -52,8 +53,10 @@ Take take(const std::string& folder) {
                  Rig::Ours,
                  {{"left_wrist", "Hand.L"}, {"head", ""}},
                  NotAPerson::Use};
-  take.method = {"paper", "paper",           false, false,  false, false, false, false,
-                 false,   RootMode::InPlace, 1.25f, -0.05f, 0.5f,  true};
+  take.method = {
+      "paper", "paper", false, false, false,
+      false,   false,   false, false, RootMode::InPlace,
+      1.25f,   -0.05f,  0.5f,  true,  {"", folder + "/styles/mine.json", 0.75f, 0.5f, 1.25f, 0.1f}};
   take.target_edits.joints = {{LeftWrist, Vec3(0.7f, 1.4f, 0.02f), false}, {Spine1, Vec3(0, 1.1f, 0), true}};
   take.target_edits.weights = weight_rows();
   take.target_edits.rest_pose = {{LeftShoulder, Vec3(0, 0.1f, -0.75f)}};

@@ -9,6 +9,7 @@
 #include "retarget/formats/npz.hpp"
 #include "retarget/formats/scan_source.hpp"
 #include "retarget/skeleton/curve_doubt.hpp"
+#include "retarget/style/load_style.hpp"
 #include "tests/retarget/pipeline/fixtures.hpp"
 
 namespace understudy::app {
@@ -136,6 +137,7 @@ StudioServices StudioTest::services() {
     if (parts.rest_extractor) networks.rest_extractor = std::make_shared<RestExtractor>();
     if (parts.transfer) networks.transfer = std::make_shared<CopyTransfer>(method.engine != "paper");
     if (parts.deformer) networks.deformer = std::make_shared<NearestDeformer>();
+    if (parts.style) networks.style = load_style(method.style);
     return networks;
   };
   services.motion_space = [] { return std::make_shared<LiftedSpace>(); };

@@ -304,6 +304,12 @@ void Gui::release_all() {
   to.KeyShift = to.KeyCtrl = to.KeyAlt = to.KeySuper = false;
 }
 
+std::string Gui::pointer() const {
+  const ImGuiIO& now = io();
+  const auto whole = [](float at) { return std::to_string(static_cast<int>(std::clamp(at, -1.0f, 1e6f))); };
+  return whole(now.MousePos.x) + " " + whole(now.MousePos.y) + (now.MouseDown[0] ? " down" : "");
+}
+
 render::CursorShape Gui::cursor() const {
   ImGui::SetCurrentContext(context_);
   using Shape = render::CursorShape;

@@ -56,6 +56,8 @@ class Gui {
 
   /// Whether the user is typing: then keys are no shortcuts.
   bool wants_text() const { return io().WantTextInput; }
+  /// Where the last frame had the pointer, "640 400", and "down" behind it where its left button was.
+  std::string pointer() const;
   /// The shape that the mouse pointer should have.
   render::CursorShape cursor() const;
 

@@ -3,6 +3,7 @@
 #include <map>
 
 #include "retarget/base/index.hpp"
+#include "retarget/base/text.hpp"
 #include "retarget/editing/limb_move.hpp"
 #include "retarget/math/rotation.hpp"
 #include "retarget/motion_space/steps.hpp"
@@ -153,6 +154,31 @@ void add_loop(std::vector<EditMark>& all, const app::Session& session) {
   }
 }
 
+/// Handles of the tempo.
+void add_tempo_marks(std::vector<EditMark>& all, const app::Session& session, const std::string& take) {
+  const auto& tempo = selected_take(session)->pose_edits.tempo;
+  for (size_t i = 0; tempo && i < tempo->marks.size(); ++i) {
+    const TempoMark& mark = tempo->marks[i];
+    const std::string number = std::to_string(i);
+    const std::string shift = mark.later_s == 0
+                                  ? "stays at its moment"
+                                  : printed("comes %.2f s %s", static_cast<double>(std::abs(mark.later_s)),
+                                            mark.later_s > 0 ? "later" : "earlier");
+    EditMark edit;
+    edit.mark = {"tempo." + number,
+                 "Frame " + std::to_string(mark.frame) + " " + shift,
+                 mark.frame,
+                 mark.frame,
+                 true,
+                 0,
+                 1,
+                 kOrange};
+    edit.move = {"tempo", take, number};
+    edit.remove = "edit.remove tempo " + take + " " + number;
+    all.push_back(std::move(edit));
+  }
+}
+
 void add_skips(std::vector<EditMark>& all, const std::set<int>& skip, const std::string& take) {
   for (auto at = skip.begin(); at != skip.end();) {
     const int first = *at;
@@ -211,6 +237,7 @@ std::vector<EditMark> edit_marks(const app::Session& session, const std::vector<
   add_fills(all, session, k);
   add_go_on(all, session, k);
   add_loop(all, session);
+  add_tempo_marks(all, session, k);
   add_skips(all, take->pose_edits.skip, k);
   KeyFrames rotations;
   for (const RotateEdit& edit : take->pose_edits.rotate)

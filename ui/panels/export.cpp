@@ -217,8 +217,7 @@ std::string word_for_take(const app::Document& document, size_t k) {
 
 std::string frames_words(const app::Session& session, size_t k) {
   if (k >= session.takes.size()) return "";
-  const int made = session.takes[k].shown.poses.size();
-  const auto frames = kept_frames(session.document.takes[k].pose_edits, made).size();
+  const auto frames = moments_of(session, k).size();
   return grouped(static_cast<int64_t>(frames)) + " frames";
 }
 

@@ -35,6 +35,7 @@ constexpr FileDialog kDialogs[] = {
      FileKind::Any, true},
     {"open_target", "target.add", "Add target", "Add", FileKind::Target},
     {"replace_target", "target.replace", "Replace target", "Replace", FileKind::Target},
+    {"style_file", "method.style", "Open a style", "Use", FileKind::Any},
     {"open_document", "document.open", "Open document", "Open", FileKind::Document},
     {"save_as", "document.save_as", "Save document", "Save", FileKind::Document, true},
     {"", "document.relocate", "Find ", "Use this file", FileKind::Any},
@@ -137,7 +138,7 @@ std::optional<std::string> draw_files(const app::Session& session, PanelContext&
     return std::nullopt;
   }
   app::Arguments arguments = {*path}, words = app::split_line(dialog_of(state.purpose).command);
-  if (state.purpose == FilePurpose::ReplaceTarget)
+  if (state.purpose == FilePurpose::ReplaceTarget || state.purpose == FilePurpose::Style)
     arguments.insert(arguments.begin(), std::to_string(session.selected_take));
   if (state.purpose == FilePurpose::BodyMotion || state.purpose == FilePurpose::Relocate)
     arguments.insert(arguments.begin(), state.first);

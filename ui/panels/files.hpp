@@ -23,6 +23,7 @@ enum class FilePurpose {
   ExportSecondBody,
   Target,
   ReplaceTarget,
+  Style,
   Document,
   SaveDocument,  ///< answers the question about unsaved changes where one waits
   Relocate,

@@ -14,6 +14,7 @@
 #include "retarget/base/index.hpp"
 #include "retarget/base/text.hpp"
 #include "retarget/formats/file_formats.hpp"
+#include "ui/panels/performance.hpp"
 #include "ui/panels/rig.hpp"
 #include "ui/panels/rows.hpp"
 #include "ui/widgets/lists.hpp"
@@ -489,6 +490,7 @@ void draw_inspector(const app::Session& session, PanelContext& context) {
   draw_takes(session, context);
   draw_target_facts(session, context);
   draw_rig(session, context);
+  draw_performance(session, context);
   draw_method(session, context);
 }
 

@@ -7,6 +7,7 @@
 #include "retarget/base/text.hpp"
 #include "ui/panels/bindings.hpp"
 #include "ui/panels/panels.hpp"
+#include "ui/panels/performance.hpp"
 #include "ui/panels/rows.hpp"
 
 namespace understudy::ui {
@@ -184,6 +185,9 @@ void draw_track(const app::Session& session, PanelContext& context, const Timeli
   const std::vector<EditMark> edits = edit_marks(session, state.fills);
   for (const EditMark& edit : edits) data.marks.push_back(edit.mark);
   data.bands = contact_bands(session, state.standing);
+  auto& phases = panel_state<PhaseBands>(context);
+  phases.follow(session);
+  data.bands.insert(data.bands.end(), phases.bands.begin(), phases.bands.end());
   if (!state.doubted.empty() && !session.source.no_person)
     data.bands.push_back({"bones_doubted", "The found bones are not to be trusted here", state.doubted, 1});
   if (session.view.steps) data.letters = state.steps.letters;

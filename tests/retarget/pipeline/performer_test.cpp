@@ -36,22 +36,6 @@ class MoodyDeformer final : public Deformer {
   mutable bool nan_next_ = false;
 };
 
-/// Leaves everything as it is and counts the frames it remembers.
-class IdentityStyle final : public MotionStyle {
- public:
-  explicit IdentityStyle(int& frames) : frames_(frames) {}
-  void reset() override { frames_ = 0; }
-  Observation push(Observation seen, float) override {
-    ++frames_;
-    return seen;
-  }
-  std::any memory() const override { return frames_; }
-  void restore(const std::any& memory) override { frames_ = std::any_cast<int>(memory); }
-
- private:
-  int& frames_;
-};
-
 struct PerformerStage {
   Joints rest = other_body();
   PointBody target{rest};
@@ -85,24 +69,20 @@ TEST(Performer, ARefusedFrameLeavesNoTrace) {
   }
 }
 
-TEST(Performer, AnIdentityStyleChangesNoByte) {
-  PerformerStage plain, styled;
-  int frames = 0;
-  styled.performer.add_style(std::make_unique<IdentityStyle>(frames));
-  for (int i = 0; i < 20; ++i) EXPECT_TRUE(same_bytes(plain.push(i).vertices, styled.push(i).vertices)) << i;
-  EXPECT_EQ(frames, 20);
-}
-
-TEST(Performer, AStyleForgetsARefusedFrameAndStartsAnew) {
+TEST(Performer, KeepsTheSkeletonThatItsScanShowsBesideAStyledOne) {
   PerformerStage stage;
-  int frames = 0;
-  stage.performer.add_style(std::make_unique<IdentityStyle>(frames));
-  stage.push(0);
-  stage.deformer->fail_once();
-  EXPECT_TRUE(stage.push(1).flagged);
-  EXPECT_EQ(frames, 1);
-  stage.performer.restart();
-  EXPECT_EQ(frames, 0);
+  Observation styled = PerformerStage::seen(0);
+  styled.exact = true;
+  styled.unstyled = Observation::Unstyled{PerformerStage::seen(5).joints, {}, {true, true}};
+  styled.unstyled->limbs[3] = LimbSight::Unseen;
+  const PerformedFrame frame = stage.performer.perform(styled, kStep);
+  EXPECT_FALSE(frame.flagged);
+  EXPECT_EQ(frame.source.joints, styled.joints);
+  EXPECT_EQ(source_joints(frame), PerformerStage::seen(5).joints);
+  EXPECT_EQ(kept(frame).source, PerformerStage::seen(5).joints);
+  EXPECT_EQ(frame.limbs[3], LimbSight::Unseen);
+  const PerformedFrame bad = stage.performer.perform(without_skeleton("nobody there"), kStep);
+  EXPECT_EQ(source_joints(bad), PerformerStage::seen(5).joints);
 }
 
 TEST(Performer, AFrameThatFailsHasNoConfidenceAndTheLastSkeleton) {

@@ -155,14 +155,18 @@ class Path : public StudioWindow, public testing::WithParamInterface<std::string
     return widgets_[name].at(std::stof(shares.substr(0, comma)), std::stof(shares.substr(comma + 1)));
   }
 
-  /// The keys that end the line are held while `action` is done.
-  void held(const Words& words, const std::string& action) {
-    std::string down, up;
+  /// "keydown ctrl " of the keys that end the line, or keyup.
+  static std::string modifiers(const Words& words, const std::string& action) {
+    std::string all;
     for (size_t i = words.size(); i > 1; --i) {
       if (words[i - 1] != "ctrl" && words[i - 1] != "shift" && words[i - 1] != "alt") break;
-      down += "keydown " + words[i - 1] + " ", up += " keyup " + words[i - 1];
+      all += action + " " + words[i - 1] + " ";
     }
-    xdotool(down + action + up);
+    return all;
+  }
+  /// The keys that end the line are held while `action` is done.
+  void held(const Words& words, const std::string& action) {
+    xdotool(modifiers(words, "keydown") + action + " " + modifiers(words, "keyup"));
   }
 
   void press(const Words& words, const std::string& button) {
@@ -177,13 +181,21 @@ class Path : public StudioWindow, public testing::WithParamInterface<std::string
   }
 
   void drag_between(const Words& words, const Place& from, const Place& to) {
-    std::string action = "mousemove " + at(from) + " sleep 0.2 mousedown 1 sleep 0.1";
+    // Each step waits until the studio has drawn it: a busy machine takes its time.
+    const auto step = [&](const std::string& action, const std::string& pointer) {
+      xdotool(action);
+      ASSERT_TRUE(wait_until([&] { return facts_["pointer"] == pointer; }))
+          << pointer << " is not seen: " << seen();
+    };
+    step(modifiers(words, "keydown") + "mousemove " + at(from), at(from));
+    frames({"frames", "12"});
+    step("mousedown 1", at(from) + " down");
     constexpr int kSteps = 5;
-    for (int i = 1; i <= kSteps; ++i)
-      action += " mousemove " +
-                at({from.x + i * (to.x - from.x) / kSteps, from.y + i * (to.y - from.y) / kSteps}) +
-                " sleep 0.1";
-    held(words, action + " mouseup 1");
+    for (int i = 1; i <= kSteps; ++i) {
+      const Place way{from.x + i * (to.x - from.x) / kSteps, from.y + i * (to.y - from.y) / kSteps};
+      step("mousemove " + at(way), at(way) + " down");
+    }
+    step("mouseup 1 " + modifiers(words, "keyup"), at(to));
   }
   /// NAME DX DY, or X Y X2 Y2.
   void drag_by(const Words& words) {

@@ -1,0 +1,39 @@
+// Where a styled source goes: its feet stand where the source's stand, and its flights keep their shape.
+#pragma once
+
+#include <array>
+
+#include "retarget/skeleton/skeleton.hpp"
+#include "retarget/style/pose_style.hpp"
+
+namespace understudy {
+
+/// Online, of constant memory. While a foot of the source stands the pelvis moves so that the styled foot
+/// stands, too, so styled steps lead along a path of their own; between, as the source's does, at the ratio
+/// of the paths so far. Heights: the lower foot is as high as the source's lower foot, in flights the pelvis
+/// rises and falls as the source's. Without a foot that stands (lying, hanging) the path is the source's.
+class StyledRoot {
+ public:
+  void reset() { *this = StyledRoot(); }
+  /// Where the pelvis of the styled pose is. styled: its local rotations.
+  Vec3 push(const StyleFrame& source, const Rotations& styled);
+
+ private:
+  /// Ball and ankle of both feet.
+  static constexpr std::array<int, 4> kPoints = {LeftFoot, RightFoot, LeftAnkle, RightAnkle};
+  struct Feet {
+    std::array<Vec3, 4> source, styled;  // world; relative to the styled pelvis
+  };
+  std::array<float, 4> bearing(const Feet& feet, float leg, float dt);
+  Vec3 step(const StyleFrame& source, const Feet& feet, const std::array<float, 4>& bears);
+
+  std::array<float, 4> levels_{};  // heights at which the points stand
+  std::array<float, 4> bore_{};    // as of bearing(), in the last frame
+  Feet last_;
+  Vec3 last_root_ = Vec3::Zero(), root_ = Vec3::Zero();  // of the source; of the result
+  float offset_ = 0;                                     // of the result's height over the source's
+  float way_source_ = 0, way_styled_ = 0;                // over the floor, of the last seconds
+  bool started_ = false;
+};
+
+}  // namespace understudy

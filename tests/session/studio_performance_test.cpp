@@ -1,0 +1,176 @@
+// How takes are performed: style and tempo.
+#include <fstream>
+
+#include "app/session/command_sets.hpp"
+#include "app/session/take_export.hpp"
+#include "retarget/base/error.hpp"
+#include "retarget/math/rotation.hpp"
+#include "tests/session/studio_fixture.hpp"
+
+namespace understudy::app {
+namespace {
+
+class PerformanceTest : public StudioTest {
+ protected:
+  void SetUp() override {
+    StudioTest::SetUp();
+    studio.emplace(services());
+    open_walk(*studio);
+  }
+  void TearDown() override {
+    studio.reset();
+    StudioTest::TearDown();
+  }
+  const Take& take(size_t k = 0) const { return studio->session().document.takes[k]; }
+  const TakeState& state(size_t k = 0) const { return studio->session().takes[k]; }
+  std::string refused(const std::string& command, const Arguments& arguments) {
+    return failure_of([&] { studio->run(command, arguments); });
+  }
+  void run(const std::string& command, const Arguments& arguments) {
+    studio->run(command, arguments);
+    studio->wait_idle();
+  }
+  double clip_seconds() const {
+    const auto inputs = export_inputs(studio->session(), {0}, {});
+    return static_cast<double>(inputs[0].clips[0].poses.size() - 1) / inputs[0].clips[0].fps;
+  }
+
+  std::optional<Studio> studio;
+};
+
+TEST_F(PerformanceTest, AStyleChangesThePosesNotTheFramesAndIsUndone) {
+  const Motion before = state().shown;
+  const auto source = state().performed[40].source;
+  run("method.style", {"0", "child"});
+  EXPECT_EQ(take().method.style.name, "child");
+  ASSERT_EQ(state().shown.poses.size(), before.poses.size());
+  EXPECT_FALSE(same_poses(state().shown, before));
+  EXPECT_EQ(state().performed[40].source, source) << "the source's skeleton is shown as it was seen";
+  const Motion whole = state().shown;
+  run("method.style_strength", {"0", "0.5"});
+  const auto turned = [&](const Motion& motion) {
+    return geodesic_angle(before.poses[40].local[Spine1], motion.poses[40].local[Spine1]);
+  };
+  EXPECT_GT(turned(whole), 0.02f);
+  EXPECT_LT(turned(state().shown), 0.8f * turned(whole));
+  run("method.style_strength", {"0", "0"});
+  EXPECT_TRUE(same_poses(state().shown, before)) << "nothing of it is nothing";
+  run("edit.undo", {});
+  run("edit.undo", {});
+  EXPECT_TRUE(take().method.style.called().empty());
+  EXPECT_TRUE(same_poses(state().shown, before));
+}
+
+TEST_F(PerformanceTest, AStrengthOutOfRangeIsBroughtInto) {
+  run("method.style", {"0", "child"});
+  run("method.style_strength", {"0", "7"});
+  EXPECT_EQ(take().method.style.strength, 1.5f);
+  EXPECT_NE(refused("method.style_strength", {"0", "much"}).find("is a number"), std::string::npos);
+}
+
+TEST_F(PerformanceTest, WhatIsNoStyleIsRefusedAndNothingChanges) {
+  EXPECT_NE(refused("method.style", {"0", "chld"}).find("there is no style 'chld'"), std::string::npos);
+  EXPECT_NE(refused("method.style", {"0", path("absent.json")}).find("there is no such file"),
+            std::string::npos);
+  std::ofstream(path("broken.json")) << "{\"understudy_style\": 1";
+  EXPECT_NE(refused("method.style", {"0", path("broken.json")}).find("broken.json: is not the JSON"),
+            std::string::npos);
+  EXPECT_TRUE(take().method.style.called().empty());
+  EXPECT_FALSE(studio->session().changed && take().method.style.any());
+}
+
+TEST_F(PerformanceTest, AStylesFileThatIsGoneEndsThatTakeAlone) {
+  std::filesystem::copy_file(US_SOURCE_DIR "/assets/styles/old.json", path("mine.json"));
+  run("compare.add", {"0"});
+  run("method.style", {"0", path("mine.json")});
+  EXPECT_EQ(take().method.style.file, path("mine.json"));
+  std::filesystem::remove(path("mine.json"));
+  run("method.style_strength", {"0", "0.8"});
+  EXPECT_NE(state(0).problem.find("mine.json: there is no such file"), std::string::npos) << state(0).problem;
+  EXPECT_TRUE(state(1).problem.empty());
+  EXPECT_FALSE(state(1).shown.poses.empty());
+}
+
+TEST_F(PerformanceTest, ATakeInAStyleIsComparedWithOneWithout) {
+  const Motion before = state().shown;
+  run("method.style", {"0", "old"});
+  run("compare.add", {"0", "style=none"});
+  ASSERT_EQ(studio->session().takes.size(), 2u);
+  EXPECT_TRUE(same_poses(state(1).shown, before));
+  EXPECT_FALSE(same_poses(state(0).shown, before));
+}
+
+TEST_F(PerformanceTest, TheTempoChangesWhenFramesAreShownNotThem) {
+  const Motion before = state().shown;
+  const double seconds = clip_seconds();
+  run("edit.tempo", {"0", "0.5"});
+  EXPECT_TRUE(same_poses(state().shown, before));
+  ASSERT_EQ(state().times.size(), before.poses.size());
+  EXPECT_NEAR(clip_seconds(), seconds / 2, 0.05);
+  run("edit.tempo", {"0", "2"});
+  EXPECT_NEAR(clip_seconds(), 2 * seconds, 0.05);
+  run("edit.trim", {"0", "0", "30"});
+  EXPECT_NEAR(clip_seconds(), 2 * 30 / studio->session().source.fps, 0.05);
+  run("edit.undo", {});
+  run("edit.tempo", {"0", "body"});
+  const float ratio = leg_length(state().target->joints) / leg_length(state().performed[0].source);
+  EXPECT_NEAR(state().times.back(), std::sqrt(static_cast<double>(ratio)) * seconds, 0.02 * seconds);
+  run("edit.tempo", {"0", "off"});
+  EXPECT_TRUE(state().times.empty());
+  EXPECT_NEAR(clip_seconds(), seconds, 1e-6);
+  EXPECT_NE(refused("edit.tempo", {"0", "fast"}).find("is a number"), std::string::npos);
+}
+
+TEST_F(PerformanceTest, PlaybackGoesAtTheTempo) {
+  Studio& s = *studio;
+  s.run("edit.tempo", {"0", "0.5"});
+  s.wait_idle();
+  s.run("playback.frame", {"0"});
+  s.run("playback.toggle");
+  s.tick(0.5, 0.5);
+  EXPECT_NEAR(s.session().playback.frame, s.session().source.fps, 2);
+}
+
+TEST_F(PerformanceTest, MomentsAreHeldAndShiftedAndNotTurnedBack) {
+  run("edit.tempo_mark", {"0", "30"});
+  EXPECT_EQ(take().pose_edits.tempo->by, TempoBy::Number);
+  const double fps = studio->session().source.fps;
+  run("edit.tempo_mark", {"0", "60"});
+  run("edit.move", {"tempo", "0", "1", "75"});  // frame 60 is shown when 75 was
+  EXPECT_NEAR(state().times[60], 75 / fps, 1e-3);
+  EXPECT_NEAR(state().times[30], 30 / fps, 1e-3);
+  EXPECT_NE(refused("edit.move", {"tempo", "0", "1", "10"}).find("turn it back"), std::string::npos);
+  EXPECT_NEAR(take().pose_edits.tempo->marks[1].later_s, 15 / fps, 1e-3) << "what is refused changes nothing";
+  run("edit.remove", {"tempo", "0", "1"});
+  EXPECT_EQ(take().pose_edits.tempo->marks.size(), 1u);
+  EXPECT_NE(refused("edit.remove", {"tempo", "0", "5"}).find("there is no mark 5"), std::string::npos);
+  EXPECT_NE(refused("edit.tempo_mark", {"0", "9999"}).find("there is no frame"), std::string::npos);
+}
+
+TEST_F(PerformanceTest, TheStylesTempoIsTaken) {
+  EXPECT_NE(refused("edit.tempo_style", {"0"}).find("has no style"), std::string::npos);
+  run("method.style", {"0", "child"});
+  run("edit.tempo_style", {"0"});
+  EXPECT_FLOAT_EQ(take().pose_edits.tempo->stroke, 0.87f);
+  EXPECT_FLOAT_EQ(take().pose_edits.tempo->spread, 0.036f);
+  run("edit.tempo_phase", {"0", "stroke", "0.6"});
+  EXPECT_FLOAT_EQ(take().pose_edits.tempo->stroke, 0.6f);
+  EXPECT_NE(refused("edit.tempo_phase", {"0", "pause", "0.6"}).find("phase is one of"), std::string::npos);
+}
+
+TEST_F(PerformanceTest, HowItIsPerformedIsMeasuredAtItsTempo) {
+  const auto value = [&](const char* key) {
+    for (const auto& [name, figure] : state().metrics)
+      if (name == key) return figure;
+    return -1.0;
+  };
+  EXPECT_EQ(value("cycle_s"), -1) << "nobody asked";
+  run("edit.tempo", {"0", "1"});
+  const double cycle = value("cycle_s");
+  EXPECT_GT(cycle, 0.4);
+  run("edit.tempo", {"0", "0.7"});
+  EXPECT_NEAR(value("cycle_s"), 0.7 * cycle, 0.05 * cycle);
+}
+
+}  // namespace
+}  // namespace understudy::app
