@@ -275,7 +275,7 @@ void evaluate_true_gap_case(Bench& bench, const Case& c, const Truth& truth, Cas
 
 /// The same by poses performed from scans.
 void evaluate_performed_gap_case(Bench& bench, const Case& c, const Truth& truth, CaseFigures& to) {
-  Networks networks = nn::load_networks(network_options(bench.options.how), {true, true, true, true});
+  Networks networks = nn::load_networks(network_options(bench.options.how), {true, true, true, true, false});
   const std::shared_ptr<const PreparedCharacter> character = open_target(case_target(c), networks);
   if (bench.fit) networks.extractor = std::make_shared<BodyFit>(bench.fit);
   Retargeter retargeter(std::move(networks), retarget_options(bench.options.how));
@@ -374,9 +374,12 @@ void evaluate_case(Bench& bench, const std::string& folder, const Case& c, CaseR
   std::optional<Mesh> mesh;  // with the file's own vertices
   std::shared_ptr<const PreparedCharacter> target;
   const bool knows_poses = options.oracle == "pose", performed = !c.target.empty();
-  Networks networks =
-      nn::load_networks(network_options(options.how),
-                        {!knows_poses, performed && !knows_poses, performed && !knows_poses, performed});
+  US_CHECK(
+      !options.how.method.style.any() || (performed && options.oracle.empty() && options.restart_every == 0),
+      c.name, ": --style is of cases with a target, without --oracle and --restart-every");
+  Networks networks = nn::load_networks(network_options(options.how),
+                                        {!knows_poses, performed && !knows_poses, performed && !knows_poses,
+                                         performed, performed && !knows_poses});
   if (knows_poses) {
     mesh = read_mesh(c.target);
   } else if (performed) {

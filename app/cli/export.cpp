@@ -157,6 +157,7 @@ CastTarget open_cast_target(const ExportOptions& options, const std::string& pat
   CastTarget out{open_target(target, networks), options.file, nullptr};
   const bool theirs = on_their_rig(target, *out.character);
   CharacterExportOptions& file = out.file;
+  file.rights = style_rights(options.how.method.style);
   US_CHECK(theirs || options.bones != "own", path, ": does not perform on bones of its own");
   file.their_rig = options.bones.empty() ? theirs && format.is_character : options.bones == "own";
   check_export_options(options.out, format, file);

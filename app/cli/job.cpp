@@ -91,9 +91,7 @@ void take_frame(Running& job, const RetargetedFrame& frame, bool live) {
 Json report_of(const JobOptions& options, const Running& job) {
   Json report = report_header(nn::weights_folder(network_options(options.how)));
   report["engine"] = options.how.method.engine;
-  if (options.how.method.style.any())
-    report["style"] = {{"name", options.how.method.style.called()},
-                       {"strength", options.how.method.style.strength}};
+  if (options.how.method.style.any()) report["style"] = style_json(options.how.method.style);
   if (options.tempo.any()) report["length"] = job.tempo->length();
   report["source"] = options.source.path;
   report["target"] = options.target.path;
@@ -103,7 +101,8 @@ Json report_of(const JobOptions& options, const Running& job) {
   if (const std::vector<MadeFrames> made = made_frames(job.doubt_m); !made.empty())
     report["made_frames"] = to_json(made);
   Metrics metrics = job.evaluator->metrics();
-  for (const auto& figure : style_figures(job.shown, job.character->target.joints, job.source->fps()))
+  for (const auto& figure :
+       style_figures(job.shown, job.character->target.joints, job.source->fps(), job.evaluator->has_legs()))
     metrics.push_back(figure);
   report["metrics"] = to_json(metrics);
   report["ms"] = to_json(job.latency, 0.5);
@@ -130,6 +129,7 @@ Running start(const JobOptions& options) {
   if (!options.out.empty()) {
     const ExportFormat& format = export_format("", options.out);
     ExportBody body{job.character, job.retargeter->performer().deformer(), {}};
+    body.file.rights = style_rights(options.how.method.style);
     body.file.their_rig = format.is_character && on_their_rig(options.target, *job.character);
     job.output = open_export(options.out, format, body, file_name(options.source.path), job.source->fps());
   }

@@ -9,6 +9,7 @@
 #include "app/run/registered_source.hpp"
 #include "app/run/report.hpp"
 #include "app/run/retargeted_source.hpp"
+#include "retarget/base/error.hpp"
 #include "retarget/base/log.hpp"
 #include "retarget/base/part_file.hpp"
 #include "retarget/base/text.hpp"
@@ -149,6 +150,9 @@ void print(const Measured& result, bool with_name) {
 }
 
 int measure(const MeasureOptions& options) {
+  US_CHECK(!options.how.method.style.any(),
+           "--style: what is measured is the source as it is; `style --report` tells "
+           "how a style changes it");
   check_writable(options.out);
   NetworkParts seeing;
   seeing.extractor = true;

@@ -209,6 +209,25 @@ nn::NetworkOptions network_options(const MethodOptions& how) {
   return options;
 }
 
+nlohmann::ordered_json style_json(const StyleChoice& style) {
+  if (!style.any()) return nullptr;
+  const StyleNote note = nn::style_note(style);
+  return {{"name", style.called()},
+          {"strength", style.strength},
+          {"licence", note.licence},
+          {"attribution", note.attribution},
+          {"non_commercial", note.non_commercial()}};
+}
+
+std::string style_rights(const StyleChoice& style) {
+  if (!style.any()) return "";
+  const StyleNote note = nn::style_note(style);
+  if (!note.non_commercial() && note.attribution.empty()) return "";
+  std::string rights = "Performed in the style " + note.label + ", " + note.licence;
+  if (note.non_commercial()) rights += " (non-commercial)";
+  return rights + (note.attribution.empty() ? "" : ", " + note.attribution);
+}
+
 std::function<std::shared_ptr<MotionSpace>()> motion_space_loader(const MethodOptions& how) {
   return [folder = nn::weights_folder(network_options(how))] {
     return std::shared_ptr<MotionSpace>(nn::load_motion_space(folder));

@@ -3,6 +3,8 @@
 
 #include <functional>
 #include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
 
 #include "app/run/method.hpp"
 #include "app/run/source.hpp"
@@ -39,6 +41,10 @@ void add_tempo_options(CLI::App& command, TempoChoice& tempo);
 /// As --rest-pose takes it: "left_shoulder=0,0,-30".
 std::string turn_words(const BoneTurn& turn);
 nn::NetworkOptions network_options(const MethodOptions& how);
+/// What reports say of a style: its name, strength, licence; null without one.
+nlohmann::ordered_json style_json(const StyleChoice& style);
+/// What a file that was made in a style has to say of rights; empty where there is nothing to be said.
+std::string style_rights(const StyleChoice& style);
 /// Loads what fills frames between scans, with the same weights.
 std::function<std::shared_ptr<MotionSpace>()> motion_space_loader(const MethodOptions& how);
 /// The options of the pipeline, networks apart.

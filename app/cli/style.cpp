@@ -29,7 +29,7 @@ struct StyleOptions {
   SourceOptions source;
   MethodOptions how;
   TempoChoice tempo;
-  double legs_m = 0;  ///< of who is to perform it; 0: the source's own
+  double legs_m = 0;  ///< of who is to perform it; 0: not told
   std::string out, report;
   bool list = false;
 };
@@ -199,13 +199,9 @@ void write_report(const StyleOptions& options, const StyledClip& styled, const M
   plain.how.method.style = {};
   const StyledClip source = styled_clip(plain);
   const Metrics is = figures_of(styled), was = figures_of(source);
-  Json report = {{"source", options.source.path},
-                 {"style", options.how.method.style.called()},
-                 {"strength", options.how.method.style.strength},
-                 {"frames", styled.poses.size()},
-                 {"apart_m", styled.apart_m},
-                 {"path_m", styled.path_m},
-                 {"source_figures", to_json(was)},
+  Json report = {{"source", options.source.path}, {"style", style_json(options.how.method.style)},
+                 {"frames", styled.poses.size()}, {"apart_m", styled.apart_m},
+                 {"path_m", styled.path_m},       {"source_figures", to_json(was)},
                  {"figures", to_json(is)}};
   report["jerk_ratio"] = ratio(value_of(before_tempo, "jerk"), value_of(was, "jerk"));
   report["stance_slide_ratio"] = ratio(value_of(is, "stance_slide"), value_of(was, "stance_slide"));

@@ -70,6 +70,34 @@ void add_own(CLI::App& command, nn::MotionSpaceTrainOptions& options) {
   command.add_flag("!--no-times", options.timed, "without time stamps" + of_paper);
 }
 
+void add_own(CLI::App& command, nn::StyleTrainOptions& options) {
+  command.add_option("--from", options.from, "folder in DATA of clips in the manner to be left")->required();
+  command.add_option("--to", options.to, "folder in DATA of clips in the manner to be taken")->required();
+  command
+      .add_option("--convolution", options.convolution,
+                  "joint: kernels of each joint's own (default); overall: over all joints")
+      ->check(CLI::IsMember({"joint", "overall"}));
+  command
+      .add_option(
+          "--joints", options.joints,
+          "all (default), or trunk-and-limbs: ankles, toes and wrists stay the source's, as depth cameras "
+          "see them badly")
+      ->check(CLI::IsMember({"all", "trunk-and-limbs"}));
+  const auto weight = [&](const char* name, double& value, const char* help) {
+    command.add_option(name, value, help)->check(CLI::Range(0.0, 1000.0));
+  };
+  weight("--cycle", options.cycle, "weight of the cycle loss (default: 15)");
+  weight("--coherence", options.coherence, "weight of the coherence loss (default: 30)");
+  weight("--transition", options.transition, "weight of the transition loss (default: 0)");
+  command.add_flag("--velocities", options.velocities,
+                   "coherence is judged against the source's, not by itself");
+  command.add_option("--smooth", options.smooth, "Gaussian over both domains' clips, frames (default: 1.5)")
+      ->check(CLI::Range(0.0, 6.0));
+  command.add_option("--licence", options.licence, "of the clips, written into the weights")->required();
+  command.add_option("--attribution", options.attribution, "whom to name, written into the weights");
+  command.add_option("--made-from", options.made_from, "what the clips are, written into the weights");
+}
+
 /// A subcommand of `train`: a network with the options that all have and its own.
 template <class Options>
 void add_network(CLI::App& train, const char* help, const std::shared_ptr<Action>& chosen) {
@@ -94,6 +122,7 @@ Action declare_train(CLI::App& command) {
   add_network<nn::DeformationTrainOptions>(command, "skin weights and pose-corrective offsets", chosen);
   add_network<nn::MotionSpaceTrainOptions>(command, "what lies between known frames, and steps as codes",
                                            chosen);
+  add_network<nn::StyleTrainOptions>(command, "a style, from clips in two manners of moving", chosen);
   return [chosen] { return (*chosen)(); };
 }
 

@@ -78,6 +78,8 @@ class Evaluator {
   const std::vector<Rotations>& rotations() const { return seen_.rotations; }
   const std::vector<Confidence>& confidence() const { return confidence_; }
   const RegisteredTruth& registered() const { return registered_; }
+  /// Whether the source's legs are seen in half of the frames.
+  bool has_legs() const { return seen_.has_legs; }
   const GapScore& gaps() const { return gaps_; }
 
  private:

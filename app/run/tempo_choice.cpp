@@ -33,7 +33,7 @@ TempoStream::TempoStream(const TempoChoice& choice, const Joints& rest, double f
   if (choice_.any() && choice_.delay_s > 0) live_.emplace(static_cast<float>(choice_.delay_s));
 }
 
-double TempoStream::length() const {
+double TempoStream::wanted_length() const {
   if (!choice_.any()) return 1;
   const std::optional<double> number = number_of(choice_);
   if (number || leg_source_.empty()) return number.value_or(1);
@@ -64,7 +64,8 @@ std::vector<PerformedFrame> TempoStream::push(const PerformedFrame& frame) {
   std::vector<PerformedFrame> out;
   if (live_) {
     last_.push_back(frame);
-    const float behind = live_->push(frame.joints, static_cast<float>(step_), static_cast<float>(length()));
+    const float behind =
+        live_->push(frame.joints, static_cast<float>(step_), static_cast<float>(wanted_length()));
     out.push_back(shown(behind));
     const auto needed = static_cast<size_t>(static_cast<double>(behind) / step_) + 3;
     while (last_.size() > needed) last_.pop_front();
@@ -75,7 +76,7 @@ std::vector<PerformedFrame> TempoStream::push(const PerformedFrame& frame) {
     ++out_;
   } else {
     const double before = at_;
-    at_ += step_ * length();
+    at_ += step_ * wanted_length();
     for (; static_cast<double>(out_) * step_ <= at_ + 1e-9; ++out_)
       out.push_back(
           between(last_.back(), frame,

@@ -31,9 +31,10 @@ class TempoStream {
   /// What is left after the last one.
   std::vector<PerformedFrame> finish();
   /// How many times as long the result lasts by now; 1 where a delay keeps its length.
-  double length() const;
+  double length() const { return live_ ? 1 : wanted_length(); }
 
  private:
+  double wanted_length() const;
   PerformedFrame between(const PerformedFrame& before, const PerformedFrame& after, float share) const;
   PerformedFrame shown(float behind_s) const;
 

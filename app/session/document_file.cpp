@@ -26,7 +26,7 @@ void visit_paths(Document& document, Visit visit) {
   visit(document.bones.second.path);
   if (document.source.blend)
     for (auto& part : document.source.blend->parts) visit(part.path);
-  for (auto& take : document.takes) visit(take.target.path);
+  for (auto& take : document.takes) visit(take.target.path), visit(take.method.style.file);
 }
 
 }  // namespace

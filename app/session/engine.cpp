@@ -259,9 +259,9 @@ void Engine::Impl::adopt_take(TakeWork& take, const Plan::TakePlan& wanted) {
                      joints_wanted == take.joints_are;
   if (!bound || another || method_wanted != take.method_is || rest_wanted != take.rest_is) {
     if (!bound) take.performer.reset();
-    if (take.performer) take.performer->restart(options_of(wanted));
     take.failed = false;
     start_anew(take);
+    if (take.performer) take.performer->restart(options_of(wanted));
   }
   take.plan = wanted;
   take.target_is = target_wanted;
@@ -457,6 +457,7 @@ bool Engine::Impl::read_frame() {
     return true;
   } catch (const std::exception& error) {
     source.reset();
+    ended = true;  // what a style holds back comes yet
     emit(SourceFailed{error.what()});
     return true;
   }
@@ -636,7 +637,7 @@ void Engine::Impl::perform(TakeWork& take) {
     event.times.push_back({seen.read_ms, extract_ms, result.transfer_ms, result.deform_ms,
                            seen.read_ms + extract_ms + result.transfer_ms + result.deform_ms});
   }
-  emit(std::move(event));
+  if (!event.frames.empty()) emit(std::move(event));
 }
 
 Engine::Engine(NetworksOf networks, std::shared_ptr<MotionBlender> blender, SpaceOf motion_space)

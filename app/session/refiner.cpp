@@ -64,9 +64,10 @@ Refined refine(const RefineRequest& request, MotionSpace* space) {
   result.joints.reserve(result.shown.poses.size() + kRoomForNewFrames);
   for (const Pose& pose : result.shown.poses)
     result.joints.push_back(forward_kinematics(request.target->joints, pose).joints);
+  result.leg_ratio = leg_ratio(request);
   if (request.edits.tempo && !result.joints.empty()) {
     const std::string problem = failure_of([&] {
-      result.times = tempo_times(*request.edits.tempo, result.joints, request.fps, leg_ratio(request));
+      result.times = tempo_times(*request.edits.tempo, result.joints, request.fps, result.leg_ratio);
     });
     if (result.problem.empty()) result.problem = problem;
   }

@@ -27,6 +27,7 @@ struct Refined {
   Motion shown;          ///< more than these where it goes on beyond the last
   std::vector<Joints> joints;
   std::vector<double> times;   ///< as TakeState's
+  float leg_ratio = 1;         ///< as TakeState's
   std::vector<Series> series;  ///< NaN beyond the last
   EditCost cost;
   std::string problem;  ///< why the edits cannot be applied; the motion is then unedited

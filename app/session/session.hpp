@@ -96,6 +96,7 @@ struct TakeState {
   std::vector<Joints> joints;  ///< of `shown`
   /// of each frame of `shown` its moment in the take, seconds, where it has a tempo of its own; else empty
   std::vector<double> times;
+  float leg_ratio = 1;  ///< of the target's legs to those of who is performed, as far as they are known
   /// Of each of the motion space's answers to what is filled or goes on, as of `joints`; empty: there is one.
   std::vector<std::vector<Joints>> alternatives;
   std::vector<Series> series;  ///< as many values as frames shown

@@ -140,6 +140,7 @@ void Studio::take_in(SourceOpened& event) {
     take.another.clear();
     take.shown = Motion{};
     take.joints.clear();
+    take.times.clear();
     take.alternatives.clear();
     take.series.clear();
     take.metrics.clear();
@@ -334,6 +335,7 @@ void Studio::take_in_refined() {
                         !std::equal(take->joints.begin(), take->joints.end(), refined.joints.begin());
     take->cost = refined.cost;
     take->times = std::move(refined.times);
+    take->leg_ratio = refined.leg_ratio;
     merge_series(take->series, std::move(refined.series));
     background_->applied[refined.take_id].refined_frames = count;
     if (!edited || count > take->performed.size()) continue;
@@ -412,7 +414,7 @@ struct Measuring {
   std::vector<Series> series;
   Metrics metrics;
   std::shared_ptr<MotionBlender> blender;
-  std::vector<Pose> styled;  // at the take's tempo, where it has one or a style
+  std::vector<MomentBetween> moments;  // at the take's tempo, where it has one or a style
 };
 
 /// Of the frames that were performed; beyond them there is nothing to measure against.
@@ -442,7 +444,12 @@ void evaluate_all(Measuring& m, JobControl& control) {
         series.values[t] = static_cast<float>(found->second);
   }
   m.metrics = evaluator.metrics();
-  for (const auto& figure : style_figures(m.styled, m.character->target.joints, m.shown.fps))
+  std::vector<Pose> styled;
+  for (const MomentBetween& moment : m.moments)
+    styled.push_back(pose_between(m.shown.poses[static_cast<size_t>(moment.before)],
+                                  m.shown.poses[static_cast<size_t>(moment.after)], moment.share));
+  const Joints& rest = m.character->target.joints;
+  for (const auto& figure : style_figures(styled, rest, m.shown.fps, evaluator.has_legs()))
     m.metrics.push_back(figure);
 }
 
@@ -464,10 +471,8 @@ void Studio::measure(size_t k) {
   m->character = take.character;
   m->deformer = take.deformer;
   const Take& of = session_.document.takes[k];
-  if (of.method.style.any() || of.pose_edits.tempo)
-    for (const MomentBetween& moment : moments_of(session_, k))
-      m->styled.push_back(pose_between(take.shown.poses[static_cast<size_t>(moment.before)],
-                                       take.shown.poses[static_cast<size_t>(moment.after)], moment.share));
+  if (of.method.style.any() || of.pose_edits.tempo)  // a trim that leaves nothing has none
+    failure_of([&] { m->moments = moments_of(session_, k); });
   m->truth = truth_of(session_, k);
   const int64_t generation = take.generation;
   Background::Applied& applied = background_->applied[id];

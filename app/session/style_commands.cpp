@@ -40,10 +40,12 @@ int frame_of_take(const Call& c, size_t take_argument, size_t i) {
   return frame;
 }
 
-/// Marks that would stop time are refused before they are kept.
-void check_tempo(const Call& c, const Take& take, const TakeState& state) {
-  if (!take.pose_edits.tempo || state.joints.empty()) return;
-  tempo_times(*take.pose_edits.tempo, state.joints, static_cast<float>(c.session.source.fps), 1);
+/// What would stop time or turn it back is refused before it is kept.
+void check_tempo(const Call& c, size_t take_argument = 0) {
+  const auto& tempo = c.take(take_argument).pose_edits.tempo;
+  const TakeState& state = c.take_state(take_argument);
+  if (!tempo || state.joints.empty()) return;
+  tempo_times(*tempo, state.joints, static_cast<float>(c.session.source.fps), state.leg_ratio);
 }
 
 /// "off", "body", or how many times as long it lasts.
@@ -55,6 +57,7 @@ void set_tempo(Call& c) {
   edit.by = word == "body" ? TempoBy::Body : TempoBy::Number;
   if (edit.by == TempoBy::Number) edit.length = c.clamped(1, "tempo", kTempoLengths.low, kTempoLengths.high);
   tempo = edit;
+  check_tempo(c);
 }
 
 void set_phase(Call& c) {
@@ -62,23 +65,31 @@ void set_phase(Call& c) {
   const size_t phase = c.choice(1, "phase", {"anticipation", "stroke", "recovery"});
   float* const lengths[] = {&tempo.anticipation, &tempo.stroke, &tempo.recovery};
   *lengths[phase] = c.clamped(2, "length", kTempoLengths.low, kTempoLengths.high);
+  check_tempo(c);
+}
+
+/// Throws Error where its file cannot be read. Networks are read where they are needed.
+void check_style(const StyleChoice& style) {
+  const std::string file = style_file(style);
+  if (!is_words_file(file)) read_manner(file);
 }
 
 /// Strokes and the spread of single movements as the take's style has them.
 void tempo_of_style(Call& c) {
   const StyleChoice& style = c.take().method.style;
   US_CHECK(!style.called().empty(), c.take().name, " has no style");
+  US_CHECK(!is_words_file(style.file), style.file, ": has no tempo of its own");
   const MannerFile file = read_manner(style_file(style));
   TempoEdit edit = c.take().pose_edits.tempo.value_or(TempoEdit{});
   edit.stroke = file.stroke;
   edit.spread = file.spread;
   c.take().pose_edits.tempo = edit;
+  check_tempo(c);
 }
 
 /// A frame that stays where it is, or comes later.
 void set_mark(Call& c) {
   auto& tempo = c.take().pose_edits.tempo;
-  const TakeState& state = c.take_state();
   const int frame = frame_of_take(c, 0, 1);
   if (!tempo) {  // a mark alone changes nothing else
     tempo = TempoEdit{};
@@ -93,7 +104,7 @@ void set_mark(Call& c) {
   else
     found->later_s = later_s;
   std::sort(marks.begin(), marks.end(), [](const auto& a, const auto& b) { return a.frame < b.frame; });
-  check_tempo(c, c.take(), state);
+  check_tempo(c);
 }
 
 }  // namespace
@@ -110,7 +121,7 @@ bool set_style(StyleChoice& style, const std::string& setting, const ArgumentRea
     StyleChoice chosen = style;
     chosen.choose(word == "none" ? "" : word);
     if (!chosen.file.empty()) chosen.file = value.path(0);
-    if (!chosen.called().empty()) read_manner(style_file(chosen));
+    if (!chosen.called().empty()) check_style(chosen);
     style = chosen;
     return true;
   }
@@ -130,7 +141,7 @@ void move_tempo_mark(Call& c) {
   US_CHECK(to < state.times.size() && from < state.times.size(), "the tempo is still being computed");
   mark.later_s += static_cast<float>(state.times[to] - state.times[from]);
   c.label = "Shift a moment";
-  check_tempo(c, c.take(1), state);
+  check_tempo(c, 1);
 }
 
 void remove_tempo_mark(Call& c) {
@@ -156,7 +167,10 @@ void add_style_commands(Commands& commands) {
                       set_phase);
   commands.add_slider(
       {"edit.tempo_spread", "Spread of movements", "TAKE SHARE: of how long each lasts, 0 to 0.2"},
-      [](Call& c) { tempo_of(c).spread = c.clamped(1, "share", 0.0f, 0.2f); });
+      [](Call& c) {
+        tempo_of(c).spread = c.clamped(1, "share", 0.0f, 0.2f);
+        check_tempo(c);
+      });
   commands.add_edit(
       {"edit.tempo_style", "Tempo of the style", "TAKE: strokes and spread as the style has them"},
       tempo_of_style);

@@ -106,7 +106,9 @@ const Method& StageMaker::first_method() const {
 
 Networks StageMaker::networks_of(const Method& method) {
   const auto [at, is_new] = networks_.try_emplace(networks_key(method));
-  if (is_new) at->second = services_.networks(method, NetworkParts::all());
+  NetworkParts parts = NetworkParts::all();
+  parts.style = false;
+  if (is_new) at->second = services_.networks(method, parts);
   return at->second;
 }
 
@@ -191,19 +193,30 @@ StageMaker::Body StageMaker::open_body(const StudyTarget& target, const Method& 
 MovingSurface StageMaker::performed(const Body& body, const Method& method, const Stage& stage) {
   const StudyTarget& target = study_.targets[static_cast<size_t>(stage.target)];
   const Watched& watched = watch(stage.motion, method);
-  Retargeter retargeter(
-      networks_for(networks_of(method), *body.character, on_their_rig(target.target, *body.character)),
-      retarget_options(method));
+  Networks networks =
+      networks_for(networks_of(method), *body.character, on_their_rig(target.target, *body.character));
+  NetworkParts style;  // others of the same networks have another
+  style.style = true;
+  if (method.style.any()) networks.style = services_.networks(method, style).style;
+  Retargeter retargeter(std::move(networks), retarget_options(method));
   retargeter.set_target(body.character->target);
   retargeter.restart();
   MovingSurface surface = body.surface;
   surface.fps = watched.source.fps;
   surface.frames.clear();
-  for (size_t i = 0; i < watched.seen.size(); ++i) {
-    PerformedFrame frame = retargeter.push(watched.seen[i], static_cast<float>(1 / surface.fps));
-    if (i >= watched.first) surface.frames.push_back(body.posed(std::move(frame.vertices)));
-    tell("target '" + target.name + "'", static_cast<int64_t>(i) + 1, ssize(watched.seen));
+  size_t performed = 0;
+  const auto take_in = [&] {
+    while (auto frame = retargeter.next()) {
+      if (performed++ >= watched.first) surface.frames.push_back(body.posed(std::move(frame->vertices)));
+      tell("target '" + target.name + "'", static_cast<int64_t>(performed), ssize(watched.seen));
+    }
+  };
+  for (const Observation& seen : watched.seen) {
+    retargeter.send(seen, static_cast<float>(1 / surface.fps));
+    take_in();
   }
+  retargeter.finish();
+  take_in();
   return surface;
 }
 

@@ -99,7 +99,8 @@ struct Character {
   /// Of each vertex of the parts, one part after the other, its number in the file, every number at least
   /// once; empty: they are the file's in its order.
   std::vector<int> file_vertices;
-  std::string file;  ///< where it came from; may be empty
+  std::string file;      ///< where it came from; may be empty
+  std::string rights{};  ///< the file's copyright; empty: it says none
 
   /// Its name in error messages.
   const std::string& called() const { return file.empty() ? name : file; }

@@ -647,13 +647,17 @@ ExportCost measure(Character written, const std::vector<StagedPerformance>& cast
 
 Character animated_character(const std::vector<CharacterPerformance>& performances) {
   const std::vector<StagedPerformance> cast = staged(performances);
-  return animated(cast, performances[0].options.progress);
+  Character character = animated(cast, performances[0].options.progress);
+  character.rights = performances[0].options.rights;
+  return character;
 }
 
 ExportCost export_character(const std::string& path, const std::vector<CharacterPerformance>& performances) {
   const std::vector<StagedPerformance> cast = staged(performances);
   const auto& progress = performances[0].options.progress;
-  const std::string bytes = gltf_bytes(animated(cast, part_of(progress, 0, 0.6f)), path);
+  Character character = animated(cast, part_of(progress, 0, 0.6f));
+  character.rights = performances[0].options.rights;
+  const std::string bytes = gltf_bytes(character, path);
   ExportCost cost = measure(parse_gltf_character(bytes, path), cast, part_of(progress, 0.6f, 1));
   cost.bytes = static_cast<int64_t>(bytes.size());
   write_file(path, bytes);

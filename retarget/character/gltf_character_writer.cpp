@@ -349,6 +349,7 @@ std::string gltf_bytes(const Character& character, const std::string& path) {
   check_character(character, path);
   ModelMaker out;
   out.model.asset.generator = "Understudy";
+  out.model.asset.copyright = character.rights;
   add_nodes(character, add_meshes(character, out), out);
   add_skins(character, out);
   add_images(character, out);

@@ -20,17 +20,22 @@ constexpr float kAround_s = 0.25f;    // of anticipation and recovery
 constexpr float kEase_s = 0.1f;       // in which one phase's tempo becomes the next one's
 constexpr uint32_t kSeed = 4;
 
-/// Of each frame the speed of the fastest of hands and feet beside the pelvis, legs/s.
+/// Speed of the fastest of hands and feet beside the pelvis, legs/s.
+float fastest_limb(const Joints& before, const Joints& now, float dt) {
+  const float leg = std::max(leg_length(now), 1e-3f);
+  float speed = 0;
+  for (const int j : kEnds) {
+    const Vec3 is = (now.row(j) - now.row(Pelvis)).transpose(),
+               was = (before.row(j) - before.row(Pelvis)).transpose();
+    if (dt > 0) speed = std::max(speed, (is - was).norm() / dt / leg);
+  }
+  return speed;
+}
+
+/// The same of each frame, a little smoothed.
 std::vector<float> acting_speed(const std::vector<Joints>& joints, float fps) {
   std::vector<float> speed(joints.size(), 0);
-  for (size_t t = 1; t < joints.size(); ++t) {
-    const float leg = std::max(leg_length(joints[t]), 1e-3f);
-    for (const int j : kEnds) {
-      const Vec3 now = (joints[t].row(j) - joints[t].row(Pelvis)).transpose(),
-                 before = (joints[t - 1].row(j) - joints[t - 1].row(Pelvis)).transpose();
-      speed[t] = std::max(speed[t], (now - before).norm() * fps / leg);
-    }
-  }
+  for (size_t t = 1; t < joints.size(); ++t) speed[t] = fastest_limb(joints[t - 1], joints[t], 1 / fps);
   if (speed.size() > 1) speed[0] = speed[1];
   return filtered(speed, half_gaussian(0.25f, fps));
 }
@@ -105,7 +110,10 @@ std::vector<float> lengths_of(const TempoEdit& edit, const std::vector<Joints>& 
 /// Shifts what is between marks with them, evenly.
 void shift(std::vector<TempoMark> marks, std::vector<double>& times) {
   const int last = static_cast<int>(times.size()) - 1;
-  std::sort(marks.begin(), marks.end(), [](const auto& a, const auto& b) { return a.frame < b.frame; });
+  std::stable_sort(marks.begin(), marks.end(),
+                   [](const auto& a, const auto& b) { return a.frame < b.frame; });
+  const auto same_frame = [](const auto& a, const auto& b) { return a.frame == b.frame; };
+  marks.erase(std::unique(marks.begin(), marks.end(), same_frame), marks.end());
   marks.erase(std::remove_if(marks.begin(), marks.end(), [&](const auto& mark) { return mark.frame > last; }),
               marks.end());
   if (marks.empty()) return;
@@ -154,7 +162,7 @@ std::vector<MovementPhase> movement_phases(const std::vector<Joints>& joints, fl
 std::vector<double> tempo_times(const TempoEdit& edit, const std::vector<Joints>& joints, float fps,
                                 float leg_ratio) {
   US_CHECK(fps > 0 && std::isfinite(fps), "a motion cannot have ", fps, " frames a second");
-  const float base = edit.by == TempoBy::Body ? std::sqrt(leg_ratio) : edit.length;
+  const float base = edit.by == TempoBy::Body ? body_tempo(leg_ratio, 1) : edit.length;
   US_CHECK(std::isfinite(base) && base > 0, "a take cannot last ", base, " times as long");
   const std::vector<float> lengths = lengths_of(edit, joints, fps, base);
   std::vector<double> times(joints.size(), 0);
@@ -197,20 +205,9 @@ Pose pose_between(const Pose& before, const Pose& after, float share) {
   return pose;
 }
 
-bool LiveTempo::is_fast(const Joints& joints, float dt) const {
-  const float leg = std::max(leg_length(joints), 1e-3f);
-  float speed = 0;
-  for (const int j : kEnds) {
-    const Vec3 now = (joints.row(j) - joints.row(Pelvis)).transpose(),
-               before = (last_.row(j) - last_.row(Pelvis)).transpose();
-    if (dt > 0) speed = std::max(speed, (now - before).norm() / dt / leg);
-  }
-  return speed >= kSlowest;
-}
-
 float LiveTempo::push(const Joints& joints, float dt, float length) {
   const double at = kept_.empty() ? 0 : kept_.back().at + static_cast<double>(dt);
-  kept_.push_back({at, !kept_.empty() && is_fast(joints, dt)});
+  kept_.push_back({at, !kept_.empty() && fastest_limb(last_, joints, dt) >= kSlowest});
   last_ = joints;
   if (kept_.size() == 1) return behind_;
   // What is shown next decides how fast time goes on.

@@ -97,8 +97,6 @@ class LiveTempo {
     double at = 0;  // seconds
     bool fast = false;
   };
-  bool is_fast(const Joints& joints, float dt) const;
-
   float delay_;
   std::deque<Kept> kept_;  // those still to be shown, and one before
   Joints last_ = Joints::Zero();

@@ -9,6 +9,7 @@
 #include "retarget/math/percentile.hpp"
 #include "retarget/math/rotation.hpp"
 #include "retarget/math/time_filter.hpp"
+#include "retarget/skeleton/foot_contact.hpp"
 #include "retarget/skeleton/stances.hpp"
 
 namespace understudy {
@@ -16,7 +17,7 @@ namespace {
 
 constexpr double kUndefined = std::numeric_limits<double>::quiet_NaN();
 constexpr float kSmoothing_s = 0.05f;
-constexpr double kShortestFlight_s = 0.15;
+constexpr double kShortestFlight_s = 0.15, kLongestFlight_s = 1.2;
 constexpr float kOffFloor = 0.06f;  // legs that both feet are above where they stand in a flight
 constexpr double kRepeats = 0.4;
 
@@ -36,15 +37,12 @@ Mat3 heading_of_hips(const Joints& joints) {
   return rotation_about_y(std::atan2(-across.z(), across.x())).transpose();
 }
 
-double mean(const std::vector<double>& values) {
+template <class Number>
+double mean(const std::vector<Number>& values) {
   if (values.empty()) return kUndefined;
   double sum = 0;
-  for (const double value : values) sum += value;
+  for (const Number value : values) sum += static_cast<double>(value);
   return sum / static_cast<double>(values.size());
-}
-
-float lowest_foot(const Joints& joints) {
-  return std::min({joints(LeftFoot, 1), joints(RightFoot, 1), joints(LeftAnkle, 1), joints(RightAnkle, 1)});
 }
 
 /// -2 times the square's coefficient of the parabola nearest to `heights`, so far apart in time.
@@ -86,25 +84,33 @@ double body_sway_deg(const JointSequence& raw, double fps) {
   return std::hypot(most[0] - least[0], most[1] - least[1]) * 180 / static_cast<double>(kPi);
 }
 
-double head_turn_deg_s(const std::vector<Rotations>& local, double fps) {
-  if (local.size() < 2) return kUndefined;
+std::vector<float> head_turns_deg_s(const std::vector<Rotations>& local, double fps) {
   std::vector<Mat3> turns;
   for (const Rotations& one : local) turns.push_back(one[Neck] * one[Head]);
   turns = filtered_rotations(turns, half_gaussian(kSmoothing_s / kSmoothestSeconds, static_cast<float>(fps)));
-  std::vector<double> speeds;
+  std::vector<float> speeds;
   for (size_t t = 1; t < turns.size(); ++t)
-    speeds.push_back(static_cast<double>(geodesic_angle(turns[t - 1], turns[t])) * fps * 180 /
-                     static_cast<double>(kPi));
-  return mean(speeds);
+    speeds.push_back(geodesic_angle(turns[t - 1], turns[t]) * static_cast<float>(fps) * 180 / kPi);
+  return speeds;
 }
 
-double pelvis_speed_legs(const JointSequence& raw, double fps) {
-  if (raw.size() < 2) return kUndefined;
+double head_turn_deg_s(const std::vector<Rotations>& local, double fps) {
+  return mean(head_turns_deg_s(local, fps));
+}
+
+std::vector<float> pelvis_speeds_legs(const JointSequence& raw, double fps) {
+  std::vector<float> speeds;
+  if (raw.empty()) return speeds;
   const JointSequence joints = smoothed(raw, fps);
-  std::vector<double> speeds;
+  const float leg = leg_of(joints);
   for (size_t t = 1; t < joints.size(); ++t)
-    speeds.push_back(static_cast<double>((joints[t].row(Pelvis) - joints[t - 1].row(Pelvis)).norm()) * fps);
-  return mean(speeds) / static_cast<double>(leg_of(joints));
+    speeds.push_back((joints[t].row(Pelvis) - joints[t - 1].row(Pelvis)).norm() * static_cast<float>(fps) /
+                     leg);
+  return speeds;
+}
+
+double pelvis_speed_legs(const JointSequence& joints, double fps) {
+  return mean(pelvis_speeds_legs(joints, fps));
 }
 
 double rise_s(const JointSequence& raw, double fps) {
@@ -134,8 +140,10 @@ double flight_gravity(const JointSequence& joints, double fps) {
   for (const Joints& one : joints) lowest.push_back(static_cast<double>(lowest_foot(one)));
   const double floor = percentile(lowest, 10);
   const auto shortest = static_cast<size_t>(std::ceil(kShortestFlight_s * fps));
+  const auto longest = static_cast<size_t>(kLongestFlight_s * fps);  // who stands higher up does not fly
   const auto end = [&] {
-    if (heights.size() >= std::max<size_t>(shortest, 4)) pulls.push_back(parabola_pull(heights, 1 / fps));
+    const bool is_flight = heights.size() >= std::max<size_t>(shortest, 4) && heights.size() <= longest;
+    if (is_flight) pulls.push_back(parabola_pull(heights, 1 / fps));
     heights.clear();
   };
   for (size_t t = 0; t < joints.size(); ++t) {

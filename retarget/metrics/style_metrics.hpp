@@ -1,5 +1,6 @@
-// Figures of how a motion is performed, whatever is done. Joints in the world, metres; all are smoothed by a
-// Gaussian of 0.05 s first, so that the noise of one capture is not taken for the life of another.
+// Figures of how a motion is performed, whatever is done. Joints in the world, metres. All but those of
+// flights and standing feet are of joints smoothed by a Gaussian of 0.05 s, so that the noise of one capture
+// is not taken for the life of another.
 #pragma once
 
 #include "retarget/metrics/joint_metrics.hpp"
@@ -9,9 +10,14 @@ namespace understudy {
 /// The range of the neck over the pelvis, degrees: how far it leans sideways and forward in the body's own
 /// heading, from the least to the most, both together (the hypotenuse). NaN with fewer than 2 frames.
 double body_sway_deg(const JointSequence& joints, double fps);
-/// Mean speed at which the head turns on the chest, degrees/s. Local rotations. NaN with fewer than 2 frames.
+/// Speed at which the head turns on the chest from each frame to the next, degrees/s: one fewer than frames.
+/// Local rotations.
+std::vector<float> head_turns_deg_s(const std::vector<Rotations>& local, double fps);
+/// Their mean; NaN with fewer than 2 frames.
 double head_turn_deg_s(const std::vector<Rotations>& local, double fps);
-/// Mean speed of the pelvis, lengths of the legs a second. NaN with fewer than 2 frames.
+/// Speed of the pelvis from each frame to the next, lengths of the legs a second.
+std::vector<float> pelvis_speeds_legs(const JointSequence& joints, double fps);
+/// Their mean; NaN with fewer than 2 frames.
 double pelvis_speed_legs(const JointSequence& joints, double fps);
 /// How far apart two places of the acting wrist (the one that is fastest at some time) are at most, beside
 /// the pelvis, over its top speed: seconds. NaN where no wrist moves.

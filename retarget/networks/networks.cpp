@@ -10,14 +10,19 @@
 #include <thread>
 
 #include "retarget/base/error.hpp"
+#include "retarget/base/file.hpp"
 #include "retarget/base/log.hpp"
 #include "retarget/base/program_files.hpp"
+#include "retarget/base/text.hpp"
 #include "retarget/motion_space/paper_space.hpp"
 #include "retarget/networks/dense_extractor.hpp"
 #include "retarget/networks/network_deformer.hpp"
 #include "retarget/networks/plugin_api.hpp"
+#include "retarget/networks/weights_layout.hpp"
 #include "retarget/pipeline/method_table.hpp"
 #include "retarget/style/load_style.hpp"
+#include "retarget/style/skeleton_style.hpp"
+#include "retarget/style/words_style.hpp"
 
 namespace understudy::nn {
 namespace {
@@ -90,6 +95,13 @@ std::unique_ptr<SkeletonExtractor> load_dense(const NetworkOptions& options, con
                               options.near ? load_parts(folder) : nullptr);
 }
 
+/// One that is figures, or a network's words.
+std::shared_ptr<MotionStyle> load_any_style(const StyleChoice& choice) {
+  if (!is_words_file(choice.file)) return load_style(choice);
+  return std::make_shared<SkeletonStyle>(
+      std::make_unique<WordsStyle>(plugin().load_words(style_file(choice))), choice.strength);
+}
+
 /// At most this many threads of OpenMP: more only cost memory, and a hundred thousand of them the process.
 void clamp_threads() {
   const char* const wanted = std::getenv("OMP_NUM_THREADS");
@@ -140,8 +152,23 @@ Networks load_networks(const NetworkOptions& options, const NetworkParts& parts)
   if (parts.transfer && engine.make) networks.transfer = engine.make();
   if (parts.deformer)
     networks.deformer = load_network_deformer(folder + "/deformation.weights", options.offsets);
-  if (parts.style && options.style.any()) networks.style = load_style(options.style);
+  if (parts.style && options.style.any()) networks.style = load_any_style(options.style);
   return networks;
+}
+
+StyleNote style_note(const StyleChoice& style) {
+  const std::string file = style_file(style);
+  if (!is_words_file(file)) return read_manner(file).note;
+  const std::string bytes = read_file(file);
+  const StoredWeights stored = parse_weights(bytes, file);
+  const auto text = [&](const char* key) {
+    const auto found = stored.texts.find(key);
+    return found == stored.texts.end() ? std::string() : found->second;
+  };
+  US_CHECK(!text("licence").empty(), file, ": has no licence");
+  StyleNote note{file_name(file), text("label"),       "Words translated by a network",
+                 text("licence"), text("attribution"), text("made_from")};
+  return note;
 }
 
 std::unique_ptr<MotionSpace> load_motion_space(const std::string& folder, const std::string& name) {

@@ -10,6 +10,7 @@
 #include "retarget/pipeline/motion_coder.hpp"
 #include "retarget/pipeline/motion_space.hpp"
 #include "retarget/pipeline/motion_style.hpp"
+#include "retarget/style/manner_file.hpp"
 
 namespace understudy::nn {
 
@@ -31,6 +32,9 @@ struct NetworkOptions {
 /// The networks with trained weights, as many as asked for; which extractor has none for T-poses leaves that
 /// one null. Throws Error when weights are missing or of another version.
 Networks load_networks(const NetworkOptions& options, const NetworkParts& parts = NetworkParts::all());
+
+/// What a style's file tells of itself, whatever its engine. Throws Error naming the file.
+StyleNote style_note(const StyleChoice& style);
 
 /// What fills gaps, with the weights in that folder: "space", or "paper" by load_motion_coder. Throws Error
 /// for another name, and when they are missing or of another version.

@@ -4,10 +4,11 @@
 #include "retarget/base/log.hpp"
 #include "retarget/networks/networks.hpp"
 #include "retarget/networks/train_options.hpp"
+#include "retarget/style/motion_words.hpp"
 
 namespace understudy::nn {
 
-constexpr int kPluginVersion = 11;
+constexpr int kPluginVersion = 12;
 
 struct PluginApi {
   int version;
@@ -16,6 +17,7 @@ struct PluginApi {
   Networks (*load)(const NetworkOptions& options, const std::string& folder, const NetworkParts& parts);
   std::unique_ptr<MotionSpace> (*load_motion_space)(const std::string& path);
   std::unique_ptr<MotionCoder> (*load_motion_coder)(const std::string& path);
+  std::unique_ptr<WordTranslator> (*load_words)(const std::string& path);
   RuntimeReport (*report)();
   int (*train)(const AnyTrainOptions& options);
 };

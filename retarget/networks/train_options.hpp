@@ -62,8 +62,20 @@ struct MotionSpaceTrainOptions : TrainOptions {
   bool timed = true;    ///< movements have their times
 };
 
+struct StyleTrainOptions : TrainOptions {
+  static constexpr const char* kNetwork = "style";
+  std::string from,
+      to;  ///< folders in the data folder: clips in the manner to be left, and in that to be taken
+  std::string convolution = "joint";  ///< "joint": kernels of each joint's own; "overall": over all joints
+  std::string joints = "all";         ///< "all", or "trunk-and-limbs": without ankles, toes and wrists
+  double cycle = 15, coherence = 30, transition = 0;  ///< weights of the losses, paper 4's
+  bool velocities = false;                      ///< coherence is judged against the source's, not by itself
+  double smooth = 1.5;                          ///< frames, the Gaussian that both domains go through
+  std::string licence, attribution, made_from;  ///< written into the weights
+};
+
 using AnyTrainOptions = std::variant<SkeletonTrainOptions, PartTrainOptions, MotionTrainOptions,
-                                     DeformationTrainOptions, MotionSpaceTrainOptions>;
+                                     DeformationTrainOptions, MotionSpaceTrainOptions, StyleTrainOptions>;
 
 /// Trains until the minutes or samples are used up, going on from the checkpoint where there is one. 0 when
 /// it came to the end, 1 when it was cancelled. Throws Error.

@@ -42,6 +42,7 @@ StoredWeights described(const json& d, std::string_view bytes, const std::string
   out.kind = d.value("kind", "");
   out.version = d.value("version", 0);
   out.numbers = d.value("numbers", std::map<std::string, double>());
+  out.texts = d.value("texts", std::map<std::string, std::string>());
   for (const auto& [name, entry] : d.at("tensors").items()) out.tensors[name] = tensor_of(entry, bytes, path);
   return out;
 }

@@ -18,12 +18,13 @@ struct StoredTensor {
   std::string_view bytes;  ///< exactly as many as the shape needs
 };
 
-/// "USWEIGHT", uint32 length of the JSON, the JSON (kind, version, numbers, tensors: name, shape, half,
-/// offset), then the tensors' bytes, little-endian.
+/// "USWEIGHT", uint32 length of the JSON, the JSON (kind, version, numbers, texts, tensors: name, shape,
+/// half, offset), then the tensors' bytes, little-endian.
 struct StoredWeights {
   std::string kind;
   int version = 0;
   std::map<std::string, double> numbers;
+  std::map<std::string, std::string> texts;  ///< "licence", "attribution" ...; files from before have none
   std::map<std::string, StoredTensor> tensors;
 };
 

@@ -8,6 +8,7 @@
 #include "retarget/pipeline/interfaces.hpp"
 #include "retarget/pipeline/motion_coder.hpp"
 #include "retarget/pipeline/motion_space.hpp"
+#include "retarget/style/motion_words.hpp"
 
 namespace understudy::nn {
 
@@ -23,5 +24,8 @@ std::unique_ptr<MotionSpace> load_inbetween_space(const std::string& path);
 
 /// Codes movements of one cycle of the legs by the network of paper 2, section 3 (StepCvae).
 std::unique_ptr<MotionCoder> load_step_coder(const std::string& path);
+
+/// Translates motion words by the network of paper 4 (WordsPair).
+std::unique_ptr<WordTranslator> load_words(const std::string& path);
 
 }  // namespace understudy::nn

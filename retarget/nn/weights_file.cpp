@@ -22,7 +22,7 @@ void each_tensor(const torch::nn::Module& module, Visit visit) {
 }
 
 WeightsHeader header_of(const StoredWeights& stored) {
-  return {stored.kind, stored.version, stored.numbers, {}};
+  return {stored.kind, stored.version, stored.numbers, stored.texts, {}};
 }
 
 torch::Tensor tensor_of(const StoredTensor& stored) {
@@ -47,6 +47,7 @@ void save_weights(const std::string& path, const WeightsHeader& header, const to
       {"kind", header.kind},
       {"version", header.version},
       {"numbers", header.numbers},
+      {"texts", header.texts},
       {"tensors", tensors}}.dump();
   const auto length = static_cast<uint32_t>(description.size());
   PartFile out(path);

@@ -12,9 +12,10 @@ namespace understudy::nn {
 
 /// A weights file's header.
 struct WeightsHeader {
-  std::string kind;                       ///< "skeleton", "part", "motion" or "deformation"
-  int version = 0;                        ///< of the network's form; another version is refused
-  std::map<std::string, double> numbers;  ///< sizes and training figures
+  std::string kind;                            ///< "skeleton", "part", "motion" or "deformation"
+  int version = 0;                             ///< of the network's form; another version is refused
+  std::map<std::string, double> numbers;       ///< sizes and training figures
+  std::map<std::string, std::string> texts{};  ///< "licence", "attribution" ...
   std::vector<std::string> lacking{};  ///< of a file that was loaded: tensors that it has not, and may lack
 };
 

@@ -8,7 +8,8 @@
 namespace understudy {
 
 void StyleChoice::choose(const std::string& word) {
-  const bool is_path = word.find('/') != std::string::npos || file_suffix(word) == ".json";
+  const bool is_path =
+      word.find('/') != std::string::npos || file_suffix(word) == ".json" || file_suffix(word) == ".weights";
   name = is_path ? "" : word;
   file = is_path ? word : "";
 }
@@ -37,6 +38,19 @@ void StyledStream::push(const Observation& seen, float dt) {
     waited_ = 0;
   }
   waiting_.push_back(std::move(next));
+  if (style_ && style_->lag_s() > 0 && waited_ > style_->lag_s() && waiting_.front().is_styled) settle();
+}
+
+/// All frames that the style holds back come; it begins anew.
+void StyledStream::settle() {
+  style_->finish();
+  for (Waiting& one : waiting_) {
+    if (!one.is_styled) continue;
+    if (std::optional<Extraction> styled = style_->pop())
+      static_cast<Extraction&>(one.seen) = std::move(*styled);
+    one.is_styled = false;
+  }
+  style_->reset();
 }
 
 std::optional<TimedObservation> StyledStream::pop() {

@@ -27,7 +27,7 @@ struct StyleChoice {
   bool any() const { return (!name.empty() || !file.empty()) && strength > 0; }
   /// What it is called in commands and reports; empty: none.
   const std::string& called() const { return file.empty() ? name : file; }
-  /// A name, or a path: what has a slash or ends in ".json".
+  /// A name, or a path: what has a slash or ends in ".json" or ".weights".
   void choose(const std::string& word);
 };
 template <class V, class S>
@@ -67,7 +67,8 @@ struct TimedObservation {
 
 /// One person's observations on their way to a performer: as they came where there is no style, else
 /// repaired, smoothed and styled. None is lost, none overtakes another; what is not believed passes as it
-/// came.
+/// came. Where nobody is believed for longer than the style's lag it begins anew, and what it held back
+/// comes.
 class StyledStream {
  public:
   /// `style` may be null. The filter's options are those of the performer.
@@ -85,6 +86,8 @@ class StyledStream {
   std::shared_ptr<MotionStyle> style_;
   UnseenLimbs unseen_;
   JointFilter filter_;
+  void settle();
+
   std::deque<Waiting> waiting_;
   float waited_ = 0;  // seconds since the last frame that the style was given
 };

@@ -40,9 +40,10 @@ struct PerformedFrame {
   Points vertices;                 ///< [V, 3] metres, in the target's order; empty when not asked for
   Joints joints = Joints::Zero();  ///< of the target, world
   Pose pose;                       ///< of the target: local rotations and root
-  Observation observed;            ///< as it came; the doubt is of what stands in where it is predicted
-  Observation source;              ///< repaired and smoothed: what was transferred; where flagged that of
-                                   ///< the last good frame
+  Observation
+      observed;  ///< as it came, styled where there is a style; the doubt is of what stands in where it is predicted
+  Observation source;  ///< repaired and smoothed: what was transferred; where flagged that of
+                       ///< the last good frame
   Confidence confidence = Confidence::Zero();  ///< of the observed joints; zero where flagged
   Standing standing{};                         ///< the feet that are held on the floor
   LimbsSight limbs{};                          ///< what is seen of the limbs; the rest stands or hangs still

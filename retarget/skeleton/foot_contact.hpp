@@ -1,6 +1,8 @@
 // When a foot stands on the floor, decided from the past only.
 #pragma once
 
+#include <algorithm>
+
 #include "retarget/base/fields.hpp"
 #include "retarget/skeleton/skeleton.hpp"
 
@@ -18,6 +20,11 @@ FieldsOf<S, FootContactOptions> fields(V& visit, S& contact) {
   visit("end_height_m", contact.end_height_m);
   visit("begin_speed", contact.begin_speed);
   visit("end_speed", contact.end_speed);
+}
+
+/// Height of the lowest joint of the feet.
+inline float lowest_foot(const Joints& joints) {
+  return std::min({joints(LeftAnkle, 1), joints(RightAnkle, 1), joints(LeftFoot, 1), joints(RightFoot, 1)});
 }
 
 /// Hysteresis for one point of a foot.

@@ -41,6 +41,10 @@ std::string style_file(const StyleChoice& choice) {
               (names.empty() ? "none comes with the program" : names) + ", or the path of a style's file");
 }
 
+bool is_words_file(const std::string& path) {
+  return file_suffix(path) == ".weights";
+}
+
 std::shared_ptr<MotionStyle> load_style(const StyleChoice& choice) {
   if (!choice.any()) return nullptr;
   const MannerFile file = read_manner(style_file(choice));

@@ -19,17 +19,12 @@ constexpr float kMostLean = 0.35f, kMostLook = 0.6f, kMostShift = 0.3f;  // radi
 constexpr float kMostBounce = 0.08f;                                     // legs
 constexpr float kLookHertz = 1.2f;
 constexpr float kHandSpeed_s = 0.3f;
-constexpr float kFloorRises = 0.03f;  // m/s: a floor that was seen too low is forgotten
-constexpr float kReach = 0.985f;      // of the leg, as far as it reaches before it straightens softly
-constexpr float kMostCrouch = 0.3f;   // legs
+constexpr float kReach = 0.985f;     // of the leg, as far as it reaches before it straightens softly
+constexpr float kMostLifted = 0.3f;  // legs: no step lifts a foot more
+constexpr float kMostCrouch = 0.3f;  // legs
 
 /// Which joints share a lean of the trunk, the pelvis against it so that the legs keep their weight.
 constexpr std::array<std::pair<int, float>, 3> kSpine = {{{Spine1, 0.4f}, {Spine2, 0.35f}, {Spine3, 0.25f}}};
-
-/// 1: upright .. 0: lies, or hangs head down.
-float uprightness(const Mat3& pelvis) {
-  return smooth_step(0.3f, 0.7f, pelvis(1, 1));
-}
 
 /// An elbow does not bend the wrong way because its movement grows.
 bool is_hinge(int j) {
@@ -49,8 +44,12 @@ Vec3 bounded(const Vec3& x, float most) {
 }  // namespace
 
 const Vec3& Follower::push(const Vec3& goal, float dt, float hertz, float damping) {
-  constexpr float kStep = 1 / 240.0f;
-  const int steps = std::clamp(static_cast<int>(std::ceil(dt / kStep)), 1, 480);
+  constexpr float kStep = 1 / 240.0f, kLongest = 1;  // seconds
+  if (dt > kLongest) {                               // after a gap it has come to rest
+    reset(goal);
+    return at_;
+  }
+  const int steps = std::max(1, static_cast<int>(std::ceil(dt / kStep)));
   const float h = dt / static_cast<float>(steps), w = 2 * kPi * hertz;
   for (int i = 0; i < steps; ++i) {
     velocity_ += h * (w * w * (goal - at_) - 2 * damping * w * velocity_);
@@ -141,7 +140,8 @@ void MannerStyle::place_legs(const StyleFrame& frame, float amount, const Vec3& 
     Vec3& goal = goals[static_cast<size_t>(side)];
     goal = (was.joints.row(leg.ankle) - was.joints.row(Pelvis)).transpose();
     goal.x() *= stride, goal.z() *= stride;
-    goal.y() += (lift - 1) * (was.joints(leg.ankle, 1) - soles_[static_cast<size_t>(side)]);
+    const float above = was.joints(leg.ankle, 1) - soles_[static_cast<size_t>(side)].height();
+    goal.y() += (lift - 1) * std::min(above, kMostLifted * leg_m);
     goal -= shift;
     const Vec3 from_hip = goal - is.joints.row(leg.hip).transpose();
     const float flat = std::hypot(from_hip.x(), from_hip.z());
@@ -175,8 +175,9 @@ Vec3 MannerStyle::enliven(const StyleFrame& frame, float amount, Rotations& pose
     if (k < 2) hands[k] = now;
   }
   for (const size_t side : {0, 1}) {
-    const float ankle = posed.joints(LeftAnkle + static_cast<int>(side), 1);
-    soles_[side] = started_ ? std::min(ankle, soles_[side] + kFloorRises * frame.dt) : ankle;
+    const Vec3 ankle = posed.joints.row(LeftAnkle + static_cast<int>(side)).transpose();
+    if (!started_) soles_[side].reset();
+    soles_[side].push(ankle, leg, frame.dt);
   }
   const float height = frame.pose.root.y() / leg;
   height_ = started_ ? height_ + slow_height_share_ * (height - height_) : height;

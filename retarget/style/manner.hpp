@@ -5,6 +5,7 @@
 #include <array>
 
 #include "retarget/pipeline/motion_style.hpp"
+#include "retarget/style/foot_level.hpp"
 #include "retarget/style/pose_style.hpp"
 
 namespace understudy {
@@ -86,8 +87,8 @@ class MannerStyle final : public PoseStyle {
   std::array<Vec3, 4> ends_{};  // slow places of hands and feet beside the pelvis, in its heading, legs
   std::array<Vec3, 2> last_hands_{};
   std::array<float, 2> hand_speed_{};
-  float height_ = 0;              // slow, of the pelvis, legs
-  std::array<float, 2> soles_{};  // heights at which the ankles stand
+  float height_ = 0;                // slow, of the pelvis, legs
+  std::array<FootLevel, 2> soles_;  // of the ankles
   Follower lean_, shift_, look_;
   bool started_ = false;
   std::optional<Rotations> next_;

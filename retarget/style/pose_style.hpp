@@ -3,6 +3,7 @@
 
 #include <optional>
 
+#include "retarget/math/smooth_step.hpp"
 #include "retarget/pipeline/interfaces.hpp"
 
 namespace understudy {
@@ -13,6 +14,12 @@ struct StyleFrame {
   Pose pose;                     ///< of them
   float dt = 0;                  ///< seconds since the frame before
 };
+
+/// How far a pelvis that is turned so stands: 1 upright .. 0 it lies, or hangs head down, and has no heading.
+/// What has none is left as it is.
+inline float uprightness(const Mat3& pelvis) {
+  return smooth_step(0.3f, 0.7f, pelvis(1, 1));
+}
 
 /// An engine. Looks at no heading and no place: turning or moving the source turns or moves the result. One
 /// thread at a time.

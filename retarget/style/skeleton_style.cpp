@@ -6,17 +6,9 @@
 #include "retarget/base/error.hpp"
 #include "retarget/math/rotation.hpp"
 #include "retarget/pipeline/human_rest.hpp"
+#include "retarget/skeleton/foot_contact.hpp"
 
 namespace understudy {
-namespace {
-
-/// The lowest joint of the feet.
-float lowest_foot(const Joints& joints) {
-  return std::min({joints(LeftAnkle, 1), joints(RightAnkle, 1), joints(LeftFoot, 1), joints(RightFoot, 1)});
-}
-
-}  // namespace
-
 Rotations by_strength(const Rotations& source, const Rotations& styled, float strength) {
   if (strength == 1) return styled;
   Rotations result;

@@ -6,10 +6,9 @@
 namespace understudy {
 namespace {
 
-constexpr float kLevelRises = 0.03f;  // m/s: a floor that was seen too low is forgotten
-constexpr float kBearing = 0.03f;     // legs above the floor at which a point still bears a part of the body
-constexpr float kLower = 0.015f;      // legs between points of which the lower one counts most
-constexpr float kStands = 0.3f;       // of a point that bears all, from which the body stands
+constexpr float kBearing = 0.03f;  // legs above the floor at which a point still bears a part of the body
+constexpr float kLower = 0.015f;   // legs between points of which the lower one counts most
+constexpr float kStands = 0.3f;    // of a point that bears all, from which the body stands
 constexpr float kHeightEase_s = 0.02f;
 constexpr float kPath_s = 4;  // over which styled and source's path are compared
 
@@ -17,16 +16,16 @@ constexpr float kPath_s = 4;  // over which styled and source's path are compare
 
 /// How much each point of the feet bears the body: 1 on the floor, less and less above it.
 std::array<float, 4> StyledRoot::bearing(const Feet& feet, float leg, float dt) {
-  for (size_t k = 0; k < kPoints.size(); ++k) {
-    const float height = feet.source[k].y();
-    levels_[k] = started_ ? std::min(height, levels_[k] + kLevelRises * dt) : height;
-  }
+  for (size_t k = 0; k < kPoints.size(); ++k) levels_[k].push(feet.source[k], leg, dt);
   // In the first frame a raised foot has no level of its own yet: both stand on one floor.
   if (!started_)
-    for (const size_t k : {0, 2}) levels_[k] = levels_[k + 1] = std::min(levels_[k], levels_[k + 1]);
+    for (const size_t k : {0, 2}) {
+      levels_[k].lower_to(levels_[k + 1].height());
+      levels_[k + 1].lower_to(levels_[k].height());
+    }
   std::array<float, 4> bears{};
   for (size_t k = 0; k < kPoints.size(); ++k) {
-    const float above = (feet.source[k].y() - levels_[k]) / (kBearing * leg);
+    const float above = (feet.source[k].y() - levels_[k].height()) / (kBearing * leg);
     bears[k] = std::exp(-0.5f * above * above);
   }
   return bears;

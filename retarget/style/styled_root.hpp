@@ -4,6 +4,7 @@
 #include <array>
 
 #include "retarget/skeleton/skeleton.hpp"
+#include "retarget/style/foot_level.hpp"
 #include "retarget/style/pose_style.hpp"
 
 namespace understudy {
@@ -27,8 +28,8 @@ class StyledRoot {
   std::array<float, 4> bearing(const Feet& feet, float leg, float dt);
   Vec3 step(const StyleFrame& source, const Feet& feet, const std::array<float, 4>& bears);
 
-  std::array<float, 4> levels_{};  // heights at which the points stand
-  std::array<float, 4> bore_{};    // as of bearing(), in the last frame
+  std::array<FootLevel, 4> levels_;
+  std::array<float, 4> bore_{};  // as of bearing(), in the last frame
   Feet last_;
   Vec3 last_root_ = Vec3::Zero(), root_ = Vec3::Zero();  // of the source; of the result
   float offset_ = 0;                                     // of the result's height over the source's

@@ -96,6 +96,7 @@ class TrainingRun {
   const TrainingProgress& progress() const { return progress_; }
   /// Of the training, 0 .. 1.
   double done_share() const;
+  double learning_rate() const;
   const torch::Device& device() const { return device_; }
 
  private:
@@ -111,7 +112,6 @@ class TrainingRun {
   void append_row(const Figures& row);
   void log_figures(const Figures& row) const;
   Figures figures() const;
-  double learning_rate() const;
   std::string checkpoint() const { return options_.out + ".checkpoint"; }
 
   nn::TrainOptions options_;
@@ -136,6 +136,8 @@ int train(const nn::PartTrainOptions& options);
 int train(const nn::MotionTrainOptions& options);
 int train(const nn::DeformationTrainOptions& options);
 int train(const nn::MotionSpaceTrainOptions& options);
+/// Samples are words.
+int train(const nn::StyleTrainOptions& options);
 /// Of the form "paper"; samples are steps.
 int train_steps(const nn::MotionSpaceTrainOptions& options);
 

@@ -112,7 +112,9 @@ TEST(DocumentFile, OfTheProgramOfBeforeOpensAndIsWrittenAlike) {
     take.method.part_refiner = take.method.hand_contacts = true, take.method.predict = false;
     for (const Proportion& one : kProportions) take.method.*one.value = Method().*one.value;
     take.target_edits.rest_pose.clear();
+    take.method.style = {};
     take.pose_edits.fill.clear(), take.pose_edits.go_on.reset(), take.pose_edits.loop.reset();
+    take.pose_edits.tempo.reset();
     for (RotateEdit& edit : take.pose_edits.rotate) edit.limb.reset();
     take.target.import.height.reset();
     take.target.not_a_person = NotAPerson::RefuseClear;
@@ -128,7 +130,7 @@ TEST(DocumentFile, OfTheProgramOfBeforeOpensAndIsWrittenAlike) {
   auto written = to_json(read, "/a/documents");
   for (auto& take : written["takes"]) {
     take["method"].erase("part_refiner"), take["method"].erase("hand_contacts");
-    take["method"].erase("predict");
+    take["method"].erase("predict"), take["method"].erase("style");
     for (const Proportion& one : kProportions) take["method"].erase(one.name);
     take["target"].erase("not_a_person"), take.erase("person");
     take["target_edits"].erase("rest_pose");

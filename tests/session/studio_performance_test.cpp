@@ -151,7 +151,7 @@ TEST_F(PerformanceTest, TheStylesTempoIsTaken) {
   EXPECT_NE(refused("edit.tempo_style", {"0"}).find("has no style"), std::string::npos);
   run("method.style", {"0", "child"});
   run("edit.tempo_style", {"0"});
-  EXPECT_FLOAT_EQ(take().pose_edits.tempo->stroke, 0.87f);
+  EXPECT_FLOAT_EQ(take().pose_edits.tempo->stroke, 0.83f);
   EXPECT_FLOAT_EQ(take().pose_edits.tempo->spread, 0.036f);
   run("edit.tempo_phase", {"0", "stroke", "0.6"});
   EXPECT_FLOAT_EQ(take().pose_edits.tempo->stroke, 0.6f);

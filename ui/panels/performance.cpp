@@ -56,19 +56,12 @@ void draw_shares(const StyleChoice& style, PanelContext& context, const std::str
                share.value, {kStyleStrengths.low, kStyleStrengths.high, 0.005f, "%.2f", 1, true});
 }
 
-/// Of the target's legs to the performer's; 0: not known yet.
-float leg_ratio(const app::TakeState* state) {
-  if (state == nullptr || !state->target || state->performed.empty()) return 0;
-  const float source = leg_length(state->performed[state->performed.size() / 2].source);
-  return source > 1e-4f ? leg_length(state->target->joints) / source : 0;
-}
-
 /// A body much smaller than the performer's floats at the performer's tempo.
 void draw_hint(const app::Take& take, const app::TakeState* state, PanelContext& context,
                const std::string& k) {
   constexpr float kSmall = 0.8f;
-  const float ratio = leg_ratio(state);
-  if (take.pose_edits.tempo || ratio <= 0 || ratio >= kSmall) return;
+  const float ratio = state != nullptr ? state->leg_ratio : 1;
+  if (take.pose_edits.tempo || ratio >= kSmall) return;
   hint(context.ui,
        printed("This body's legs are %.2f of the performer's: at the performer's tempo it falls at %.2f of "
                "gravity.",

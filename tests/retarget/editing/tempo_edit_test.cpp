@@ -94,6 +94,9 @@ TEST(TempoEdit, ATempoThatWouldTurnBackTimeIsRefused) {
   EXPECT_THROW(tempo_times(edit, walking(), kFps, 1), Error);
   edit.marks = {{30, 0}, {31, 2}};
   EXPECT_THROW(tempo_times(edit, walking(), kFps, 1), Error);
+  edit.marks = {{30, 0}, {30, 1}};  // of two on one frame the first counts
+  const auto times = tempo_times(edit, walking(), kFps, 1);
+  EXPECT_TRUE(std::is_sorted(times.begin(), times.end()));
   edit.marks.clear();
   edit.by = TempoBy::Number;
   edit.length = 0;

@@ -111,6 +111,18 @@ TEST(StyledStream, AFrameThatTheStyleRefusesSaysWhy) {
   EXPECT_TRUE(out[1].seen.problem.empty());
 }
 
+TEST(StyledStream, WhereNobodyComesForLongerThanTheLagWhatWasHeldBackComes) {
+  StyledStream stream(std::make_shared<LateStyle>(3));
+  for (int i = 0; i < 6; ++i) stream.push(styled_seen(i), kStyleStep);
+  EXPECT_EQ(all_of(stream).size(), 3u);
+  for (int i = 0; i < 5; ++i) stream.push(without_skeleton("nobody there"), kStyleStep);
+  EXPECT_EQ(all_of(stream).size(), 8u);
+  for (int i = 0; i < 6; ++i) stream.push(styled_seen(i), kStyleStep);
+  EXPECT_EQ(all_of(stream).size(), 3u) << "and it goes on as before";
+  stream.finish();
+  EXPECT_EQ(all_of(stream).size(), 3u);
+}
+
 TEST(StyledStream, StartsAnew) {
   StyledStream stream(std::make_shared<LateStyle>(5));
   for (int i = 0; i < 3; ++i) stream.push(styled_seen(i), kStyleStep);

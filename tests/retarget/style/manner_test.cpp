@@ -174,6 +174,35 @@ TEST(MannerStyle, PathsOfTenThousandFramesKeepTheirScale) {
   EXPECT_NEAR(last / first, 1, 0.02);
 }
 
+TEST(MannerStyle, GoesOnAfterAGapOfMinutes) {
+  const auto source = motion("dance", 30, 20);
+  for (const char* const name : {"child", "old", "tired", "happy"}) {
+    const auto style = style_of(name);
+    for (size_t t = 0; t < source.size(); ++t) {
+      style->push(source[t], t == 10 ? 180.0f : 1 / 30.0f);
+      const auto out = style->pop();
+      ASSERT_TRUE(out);
+      EXPECT_TRUE(out->joints.allFinite()) << name << t;
+      EXPECT_LT((out->joints - source[t].joints).rowwise().norm().maxCoeff(), 1) << name << t;
+    }
+  }
+}
+
+TEST(MannerStyle, WhoClimbsKeepsLegsAndHeight) {
+  auto source = motion("walk", 30, 300);
+  for (size_t t = 0; t < source.size(); ++t)
+    source[t].joints.col(1).array() += 0.3f * static_cast<float>(t) / 30;  // 3 m of stairs in ten seconds
+  for (const char* const name : {"child", "tired"}) {
+    const auto style = style_of(name);
+    const auto out = styled(*style, source);
+    for (size_t t = 30; t < out.size(); ++t) {
+      EXPECT_NEAR(out[t].joints(Pelvis, 1), source[t].joints(Pelvis, 1), 0.2f) << name << t;
+      const float reach = (out[t].joints.row(LeftAnkle) - out[t].joints.row(LeftHip)).norm();
+      EXPECT_GT(reach, 0.5f * leg_length(source[t].joints)) << name << t;
+    }
+  }
+}
+
 TEST(MannerStyle, ASkeletonWithoutLegsIsRefused) {
   const auto style = style_of("child");
   Extraction none;
