@@ -1,0 +1,127 @@
+// `understudy style`, and --style, --tempo and --delay of `retarget` and `export`.
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "retarget/character/read_character.hpp"
+#include "retarget/formats/npz.hpp"
+#include "retarget/motion/clip.hpp"
+#include "tests/app/cli_fixture.hpp"
+
+namespace understudy::tests {
+namespace {
+
+using Json = nlohmann::json;
+
+class Styling : public ShippedProgram {
+ protected:
+  void SetUp() override { write_walk(walk()); }
+  std::string walk() const { return scratch.path("walk.npz"); }
+  Finished style(const std::vector<std::string>& more) {
+    std::vector<std::string> arguments = {"style"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return run_program(arguments);
+  }
+  Finished retarget(const std::vector<std::string>& more) {
+    std::vector<std::string> arguments = {"retarget", "--source", walk(), "--target", target()};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return run_program(arguments);
+  }
+  /// Frames of a GLB's only animation.
+  int64_t frames_of(const std::string& file) const {
+    const Character character = read_character(file);
+    return clip_times(character, 0, 30).count;
+  }
+  /// It fails with one sentence that has these words, and leaves nothing behind.
+  void expect_refused(const Finished& done, const std::string& words, const std::string& file) {
+    EXPECT_NE(done.code, 0) << done.out;
+    EXPECT_NE(done.err.find(words), std::string::npos) << done.err;
+    EXPECT_FALSE(std::filesystem::exists(file));
+  }
+};
+
+TEST_F(Styling, AllStylesAreListedWithTheirLicences) {
+  const Finished done = style({"--list"});
+  ASSERT_EQ(done.code, 0) << done.err;
+  for (const char* const name : {"child", "old", "tired", "happy"})
+    EXPECT_NE(done.out.find(name), std::string::npos) << done.out;
+  EXPECT_NE(done.out.find("Licence: MIT"), std::string::npos) << done.out;
+}
+
+TEST_F(Styling, AWalkIsWrittenInEachFormatAndReported) {
+  for (const char* const file : {"a.bvh", "a.npz", "a.glb"}) {
+    const Finished done = style({walk(), "--to", "child", "--out", out(file), "--report", out("r.json")});
+    ASSERT_EQ(done.code, 0) << done.err;
+    EXPECT_NE(done.out.find("150 frames"), std::string::npos) << done.out;
+  }
+  const Json report = Json::parse(read_bytes(out("r.json")));
+  EXPECT_EQ(report["style"]["name"], "child");
+  EXPECT_EQ(report["style"]["licence"], "MIT");
+  EXPECT_FALSE(report["style"]["non_commercial"]);
+  EXPECT_GT(report["figures"]["body_sway_deg"], report["source_figures"]["body_sway_deg"]);
+  EXPECT_LT(report["stance_slide_ratio"], 1.5);
+  EXPECT_EQ(read_npz(out("a.npz")).at("poses").shape[0], 150);
+  EXPECT_EQ(frames_of(out("a.glb")), 150);
+  const Finished again = style({out("a.bvh"), "--to", "old", "--out", out("b.bvh")});
+  EXPECT_EQ(again.code, 0) << again.err;
+}
+
+TEST_F(Styling, StrengthNothingIsNoStyleToTheByte) {
+  ASSERT_EQ(retarget({"--out", out("plain.bvh")}).code, 0);
+  ASSERT_EQ(retarget({"--style", "old", "--style-strength", "0", "--out", out("none.bvh")}).code, 0);
+  ASSERT_EQ(retarget({"--style", "old", "--out", out("old.bvh")}).code, 0);
+  EXPECT_EQ(read_bytes(out("plain.bvh")), read_bytes(out("none.bvh")));
+  EXPECT_NE(read_bytes(out("plain.bvh")), read_bytes(out("old.bvh")));
+}
+
+TEST_F(Styling, TheTempoChangesTheLengthAndADelayKeepsIt) {
+  ASSERT_EQ(retarget({"--tempo", "0.5", "--out", out("half.glb"), "--report", out("half.json")}).code, 0);
+  EXPECT_NEAR(static_cast<double>(frames_of(out("half.glb"))), 76, 1);
+  EXPECT_NEAR(Json::parse(read_bytes(out("half.json")))["length"].get<double>(), 0.5, 1e-6);
+  const Finished done = run_program(
+      {"export", "--source", walk(), "--target", target(), "--tempo", "2", "--out", out("twice.glb")});
+  ASSERT_EQ(done.code, 0) << done.err;
+  EXPECT_NEAR(static_cast<double>(frames_of(out("twice.glb"))), 299, 1);
+  ASSERT_EQ(
+      retarget({"--tempo", "0.7", "--delay", "0.5", "--out", out("live.glb"), "--report", out("live.json")})
+          .code,
+      0);
+  EXPECT_GE(frames_of(out("live.glb")), 150);
+  EXPECT_LE(frames_of(out("live.glb")), 166) << "the reserve alone comes after";
+  EXPECT_EQ(Json::parse(read_bytes(out("live.json")))["length"], 1);
+}
+
+TEST_F(Styling, AStylesLicenceGoesIntoTheFile) {
+  Json mine = Json::parse(read_bytes(US_SOURCE_DIR "/assets/styles/happy.json"));
+  mine["licence"] = "CC BY-NC 4.0";
+  mine["attribution"] = "(c) Somebody";
+  std::ofstream(scratch.path("mine.json")) << mine.dump();
+  ASSERT_EQ(retarget({"--style", scratch.path("mine.json"), "--out", out("mine.glb")}).code, 0);
+  const std::string bytes = read_bytes(out("mine.glb"));
+  EXPECT_NE(bytes.find("CC BY-NC 4.0 (non-commercial), (c) Somebody"), std::string::npos);
+}
+
+TEST_F(Styling, BadInputIsRefusedInASentence) {
+  const std::string file = out("x.bvh");
+  expect_refused(style({walk(), "--to", "chld", "--out", file}), "there is no style 'chld'", file);
+  expect_refused(style({walk(), "--to", "child"}), "--out is required", file);
+  expect_refused(style({walk(), "--out", file}), "--to is required", file);
+  expect_refused(style({"--to", "child", "--out", file}), "MOTION is required", file);
+  expect_refused(style({walk(), "--to", "child", "--out", out("x.fbx")}), ".bvh, .npz or .glb", out("x.fbx"));
+  expect_refused(style({walk(), "--to", "child", "--strength", "3", "--out", file}), "--strength", file);
+  expect_refused(style({walk(), "--tempo", "body", "--out", file}), "--legs", file);
+  expect_refused(retarget({"--tempo", "fast", "--out", file}), "--tempo fast: must be body, off", file);
+  expect_refused(retarget({"--tempo", "0", "--out", file}), "--tempo 0: must be body, off", file);
+  expect_refused(retarget({"--tempo", "-1", "--out", file}), "--tempo", file);
+  expect_refused(retarget({"--delay", "1", "--out", file}), "--delay is of a tempo", file);
+  expect_refused(style({scratch.path("absent.bvh"), "--to", "child", "--out", file}), "absent.bvh", file);
+  std::ofstream(scratch.path("bad.json")) << "{\"understudy_style\": 9, \"joints\": \"SMPL 22\"}";
+  expect_refused(style({walk(), "--to", scratch.path("bad.json"), "--out", file}),
+                 "bad.json: is of version 9", file);
+  std::ofstream(scratch.path("bad.weights")) << "nothing";
+  expect_refused(style({walk(), "--to", scratch.path("bad.weights"), "--out", file}),
+                 "bad.weights: not a weights", file);
+}
+
+}  // namespace
+}  // namespace understudy::tests
