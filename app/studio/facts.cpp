@@ -119,6 +119,16 @@ std::string second_bones(const Session& session) {
   return std::to_string(performed ? performed->rig.count() : 0);
 }
 
+using Facts = std::vector<std::pair<std::string, std::string>>;
+
+/// Of how the selected take is performed.
+Facts performance(const Session& session) {
+  return {{"style", style(session)},
+          {"tempo", tempo(session)},
+          {"tempo_marks", tempo_marks(session)},
+          {"lasts", lasts(session)}};
+}
+
 }  // namespace
 
 std::vector<std::pair<std::string, std::string>> facts(const Session& session) {
@@ -126,7 +136,7 @@ std::vector<std::pair<std::string, std::string>> facts(const Session& session) {
   const auto takes = [&](const auto& counted) {
     return count(std::count_if(session.takes.begin(), session.takes.end(), counted));
   };
-  return {
+  Facts all = {
       {"frames", std::to_string(frame_count(session))},
       {"frame", std::to_string(shown_frame(session))},
       {"source_frames", count(session.source.frames.size())},
@@ -156,10 +166,6 @@ std::vector<std::pair<std::string, std::string>> facts(const Session& session) {
       {"fills", fills(session)},
       {"blend", blend(session)},
       {"goes_on", goes_on(session)},
-      {"style", style(session)},
-      {"tempo", tempo(session)},
-      {"tempo_marks", tempo_marks(session)},
-      {"lasts", lasts(session)},
       {"loop", looped(session)},
       {"map_steps", std::to_string(session.map.map ? session.map.map->size() : 0)},
       {"map_like", count(session.map.like.size())},
@@ -183,6 +189,9 @@ std::vector<std::pair<std::string, std::string>> facts(const Session& session) {
       {"study_minutes", printed("%.2f", session.study.minutes)},
       {"study_problem", session.study.problem},
   };
+  const Facts performed = performance(session);
+  all.insert(all.end(), performed.begin(), performed.end());
+  return all;
 }
 
 std::string fact(const Session& session, const std::string& key) {

@@ -86,6 +86,7 @@ double body_sway_deg(const JointSequence& raw, double fps) {
 
 std::vector<float> head_turns_deg_s(const std::vector<Rotations>& local, double fps) {
   std::vector<Mat3> turns;
+  turns.reserve(local.size());
   for (const Rotations& one : local) turns.push_back(one[Neck] * one[Head]);
   turns = filtered_rotations(turns, half_gaussian(kSmoothing_s / kSmoothestSeconds, static_cast<float>(fps)));
   std::vector<float> speeds;

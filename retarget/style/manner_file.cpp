@@ -61,7 +61,7 @@ std::string text(const Json& json, const char* key, const std::string& path, boo
     return "";
   }
   US_CHECK(found->is_string(), path, ": ", key, " is not a text");
-  const std::string value = found->get<std::string>();
+  std::string value = found->get<std::string>();
   US_CHECK(!needed || !value.empty(), path, ": its ", key, " is empty");
   return value;
 }

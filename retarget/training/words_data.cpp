@@ -65,6 +65,7 @@ std::string action_of(const std::string& path) {
 
 torch::Tensor stacked(const WordDomain& domain, const std::vector<size_t>& chosen) {
   std::vector<torch::Tensor> rows;
+  rows.reserve(chosen.size());
   for (const size_t i : chosen) rows.push_back(nn::tensor_of(domain.range.to_unit(domain.words[i])));
   return torch::stack(rows);
 }
