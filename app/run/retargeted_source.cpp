@@ -5,6 +5,7 @@
 #include "retarget/base/clock.hpp"
 #include "retarget/base/error.hpp"
 #include "retarget/base/log.hpp"
+#include "retarget/base/text.hpp"
 
 namespace understudy::app {
 
@@ -29,6 +30,9 @@ RetargetedSource::RetargetedSource(Source& source, Retargeter& retargeter, const
       edits_(options.complete > 0 ? ScanEdits() : options.edits),
       cut_(retargeter.extractor(), options) {
   retargeter_.restart();
+  if (retargeter_.lag_s() > 0)
+    log::info(name_ + printed(": each frame comes %.1f s later, for its style",
+                              static_cast<double>(retargeter_.lag_s())));
   look_with(retargeter_, source_);
   source_.set_tools({[this] { return retargeter_.extractor(); }, motion_space, {}});
 }

@@ -59,6 +59,8 @@ class Retargeter {
     return performer().perform(styled->seen, styled->dt);
   }
 
+  /// Seconds by which the style lets frames come later; 0: at once.
+  float lag_s() const { return styled_.lag_s(); }
   Observer& observer() { return observer_; }
   /// Null: it takes given skeletons alone.
   const std::shared_ptr<SkeletonExtractor>& extractor() const { return networks_.extractor; }
