@@ -166,9 +166,8 @@ StyleNote style_note(const StyleChoice& style) {
     return found == stored.texts.end() ? std::string() : found->second;
   };
   US_CHECK(!text("licence").empty(), file, ": has no licence");
-  StyleNote note{file_name(file), text("label"),       "Words translated by a network",
-                 text("licence"), text("attribution"), text("made_from")};
-  return note;
+  return {file_name(file), text("label"),       "Words translated by a network",
+          text("licence"), text("attribution"), text("made_from")};
 }
 
 std::unique_ptr<MotionSpace> load_motion_space(const std::string& folder, const std::string& name) {

@@ -12,8 +12,7 @@ namespace understudy {
 namespace {
 
 constexpr std::array<int, 4> kEnds = {LeftWrist, RightWrist, LeftFoot, RightFoot};
-constexpr std::array<float, 4> kPull = {0.5f, 0.5f, 0.25f,
-                                        0.25f};  // how much of the sway follows each of them
+constexpr std::array<float, 4> kPull = {0.5f, 0.5f, 0.25f, 0.25f};  // how much of the sway follows each
 constexpr float kLarge = 1.0f, kLargest = 2.4f;  // radians: movements from here on are not made larger
 constexpr float kMostLean = 0.35f, kMostLook = 0.6f, kMostShift = 0.3f;  // radians, radians, legs
 constexpr float kMostBounce = 0.08f;                                     // legs
@@ -23,7 +22,7 @@ constexpr float kReach = 0.985f;     // of the leg, as far as it reaches before 
 constexpr float kMostLifted = 0.3f;  // legs: no step lifts a foot more
 constexpr float kMostCrouch = 0.3f;  // legs
 
-/// Which joints share a lean of the trunk, the pelvis against it so that the legs keep their weight.
+/// Which joints share a lean of the trunk.
 constexpr std::array<std::pair<int, float>, 3> kSpine = {{{Spine1, 0.4f}, {Spine2, 0.35f}, {Spine3, 0.25f}}};
 
 /// An elbow does not bend the wrong way because its movement grows.
