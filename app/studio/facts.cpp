@@ -129,6 +129,18 @@ Facts performance(const Session& session) {
           {"lasts", lasts(session)}};
 }
 
+Facts of_study(const Session& session) {
+  const StudyState& study = session.study;
+  return {
+      {"study", study.study ? study.study->name : ""},
+      {"study_path", study.path},
+      {"study_changed", yes_no(study.changed)},
+      {"study_trials", std::to_string(study.count)},  // of a participant, practice left out
+      {"study_minutes", printed("%.2f", study.minutes)},
+      {"study_problem", study.problem},
+  };
+}
+
 }  // namespace
 
 std::vector<std::pair<std::string, std::string>> facts(const Session& session) {
@@ -182,15 +194,9 @@ std::vector<std::pair<std::string, std::string>> facts(const Session& session) {
       {"question", question_name(session)},
       {"jobs", count(session.jobs.size())},
       {"bad_frames", count(bad_frames(session).size())},
-      {"study", session.study.study ? session.study.study->name : ""},
-      {"study_path", session.study.path},
-      {"study_changed", yes_no(session.study.changed)},
-      {"study_trials", std::to_string(session.study.count)},  // of a participant, practice left out
-      {"study_minutes", printed("%.2f", session.study.minutes)},
-      {"study_problem", session.study.problem},
   };
-  const Facts performed = performance(session);
-  all.insert(all.end(), performed.begin(), performed.end());
+  for (const Facts& more : {of_study(session), performance(session)})
+    all.insert(all.end(), more.begin(), more.end());
   return all;
 }
 
