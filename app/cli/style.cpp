@@ -8,16 +8,13 @@
 #include "app/run/exports.hpp"
 #include "app/run/interrupt.hpp"
 #include "app/run/report.hpp"
-#include "app/run/retargeted_source.hpp"
+#include "app/run/styled_clip.hpp"
 #include "retarget/base/error.hpp"
 #include "retarget/base/text.hpp"
 #include "retarget/character/gltf_character.hpp"
 #include "retarget/character/rig_character.hpp"
 #include "retarget/formats/file_formats.hpp"
 #include "retarget/formats/motion_writers.hpp"
-#include "retarget/metrics/joint_metrics.hpp"
-#include "retarget/pipeline/copy_transfer.hpp"
-#include "retarget/pipeline/human_rest.hpp"
 #include "retarget/style/load_style.hpp"
 
 namespace understudy::app {
@@ -32,78 +29,17 @@ struct StyleOptions {
   bool list = false;
 };
 
-/// Somebody who moves in a style, on their own bones.
-struct StyledClip {
-  double fps = 30;
-  Joints rest = Joints::Zero();
-  std::vector<Pose> poses;
-  float path_m = 0, apart_m = 0;  ///< length of the source's path; how far from its end the styled one ends
-};
-
-/// The frame of a body that is the source's own.
-Pose own_pose(const PerformedFrame& frame, CopyTransfer& bones, float dt) {
-  return {bones.push(frame.source, dt), frame.source.joints.row(Pelvis).transpose()};
-}
-
-StyledClip styled_clip(const StyleOptions& options) {
+StyledClip clip_of(const StyleOptions& options) {
   NetworkParts parts;
   parts.extractor = parts.style = true;
-  Retargeter retargeter(nn::load_networks(network_options(options.how), parts),
-                        retarget_options(options.how));
-  const auto source = open_source(options.source);
-  RetargetedSource retargeted(*source, retargeter, options.source, motion_space_loader(options.how));
-  StyledClip clip;
-  clip.fps = source->fps();
-  CopyTransfer bones;
-  bones.reset(human_rest());
-  std::array<RunningMedian, kJointCount> lengths;
-  std::optional<Vec3> before;
-  Progress progress(file_name(options.source.path), source->count().value_or(0));
-  while (const auto frame = retargeted.next()) {
-    check_interrupt("after frame " + std::to_string(frame->scan.number));
-    progress.step(retargeted.frames());
-    if (frame->result.flagged && clip.poses.empty()) continue;
-    clip.poses.push_back(frame->result.flagged
-                             ? clip.poses.back()
-                             : own_pose(frame->result, bones, static_cast<float>(1 / clip.fps)));
-    if (frame->result.flagged) continue;
-    const auto seen = bone_lengths(frame->result.source.joints);
-    for (int j = 1; j < kJointCount; ++j) lengths[j].push(seen[j]);
-    const Vec3 was = source_joints(frame->result).row(Pelvis).transpose(), is = clip.poses.back().root;
-    if (before) clip.path_m += std::hypot(was.x() - before->x(), was.z() - before->z());
-    before = was;
-    clip.apart_m = std::hypot(is.x() - was.x(), is.z() - was.z());
-  }
-  progress.finish();
-  retargeted.check_used();
-  Eigen::Array<float, kJointCount, 1> usual = Eigen::Array<float, kJointCount, 1>::Zero();
-  for (int j = 1; j < kJointCount; ++j) usual[j] = 0.5f * (lengths[j].value() + lengths[kMirror[j]].value());
-  clip.rest = rest_with_lengths(human_rest(), usual);
-  return clip;
-}
-
-/// On the clip's own bones "body" needs the legs of who will perform it.
-void give_tempo(const StyleOptions& options, StyledClip& clip) {
-  TempoChoice choice = options.tempo;
-  if (choice.tempo == "body") {
-    US_CHECK(options.legs_m > 0,
-             "--tempo body: --legs tells how long the legs (thigh and shin) of who performs it are, metres");
-    choice.tempo = printed(
-        "%.9g", static_cast<double>(body_tempo(static_cast<float>(options.legs_m), leg_length(clip.rest))));
-  }
-  TempoStream tempo(choice, clip.rest, clip.fps);
-  std::vector<Pose> poses;
-  const auto add = [&](const std::vector<PerformedFrame>& frames) {
-    for (const PerformedFrame& frame : frames) poses.push_back(frame.pose);
-  };
-  for (const Pose& pose : clip.poses) {
-    PerformedFrame frame;
-    frame.pose = pose;
-    frame.joints = frame.source.joints = forward_kinematics(clip.rest, pose).joints;
-    add(tempo.push(frame));
-  }
-  add(tempo.finish());
-  clip.poses = std::move(poses);
+  std::optional<Progress> progress;
+  return styled_clip(options.source, nn::load_networks(network_options(options.how), parts),
+                     retarget_options(options.how), motion_space_loader(options.how),
+                     [&](int64_t done, int64_t of) {
+                       check_interrupt("after frame " + std::to_string(done));
+                       if (!progress) progress.emplace(file_name(options.source.path), of);
+                       progress->step(done);
+                     });
 }
 
 /// An octahedron along each bone.
@@ -183,19 +119,11 @@ Json ratio(double after, double before) {
   return std::isfinite(after) && std::isfinite(before) && before != 0 ? Json(after / before) : Json();
 }
 
-Metrics figures_of(const StyledClip& clip) {
-  Metrics figures = style_figures(clip.poses, clip.rest, clip.fps);
-  JointSequence joints;
-  for (const Pose& pose : clip.poses) joints.push_back(forward_kinematics(clip.rest, pose).joints);
-  figures.emplace_back("jerk", jerk(joints, clip.fps));
-  return figures;
-}
-
 /// The figures of the source on its own bones, and those of what was made of it.
 void write_report(const StyleOptions& options, const StyledClip& styled, const Metrics& before_tempo) {
   StyleOptions plain = options;
   plain.how.method.style = {};
-  const StyledClip source = styled_clip(plain);
+  const StyledClip source = clip_of(plain);
   const Metrics is = figures_of(styled), was = figures_of(source);
   Json report = {{"source", options.source.path}, {"style", style_json(options.how.method.style)},
                  {"frames", styled.poses.size()}, {"apart_m", styled.apart_m},
@@ -218,10 +146,10 @@ int run_style(const StyleOptions& options) {
   check(options.tempo);
   check_not_read(options.out, {options.source.path, options.source.motion, options.source.times});
   for (const std::string& path : {options.out, options.report}) check_writable(path);
-  StyledClip clip = styled_clip(options);
+  StyledClip clip = clip_of(options);
   const double before_s = static_cast<double>(clip.poses.size()) / clip.fps;
   const Metrics before_tempo = options.report.empty() ? Metrics() : figures_of(clip);
-  give_tempo(options, clip);
+  give_tempo(options.tempo, options.legs_m, clip);
   write_clip(options.out, clip);
   if (!options.report.empty()) write_report(options, clip, before_tempo);
   std::printf(

@@ -1,7 +1,14 @@
 #include <CLI/CLI.hpp>
+#include <cstdio>
 
 #include "app/cli/commands.hpp"
+#include "app/cli/progress.hpp"
 #include "app/run/interrupt.hpp"
+#include "app/run/style_teacher.hpp"
+#include "retarget/base/error.hpp"
+#include "retarget/base/part_file.hpp"
+#include "retarget/base/text.hpp"
+#include "retarget/networks/networks.hpp"
 #include "retarget/networks/train_options.hpp"
 #include "retarget/pipeline/method_table.hpp"
 
@@ -70,32 +77,97 @@ void add_own(CLI::App& command, nn::MotionSpaceTrainOptions& options) {
   command.add_flag("!--no-times", options.timed, "without time stamps" + of_paper);
 }
 
-void add_own(CLI::App& command, nn::StyleTrainOptions& options) {
+/// A style of either engine.
+struct StyleTraining {
+  nn::StyleTrainOptions words;
+  std::string engine = "manner", label;
+  bool single = false;  ///< of a manner: gains of single joints
+};
+
+void add_style_domains(CLI::App& command, nn::StyleTrainOptions& options) {
   command.add_option("--from", options.from, "folder in DATA of clips in the manner to be left")->required();
   command.add_option("--to", options.to, "folder in DATA of clips in the manner to be taken")->required();
-  command
-      .add_option("--convolution", options.convolution,
-                  "joint: kernels of each joint's own (default); overall: over all joints")
-      ->check(CLI::IsMember({"joint", "overall"}));
+  command.add_option("--smooth", options.smooth, "Gaussian over both domains' clips, frames (default: 1.5)")
+      ->check(CLI::Range(0.0, 6.0));
+  command.add_option("--licence", options.licence, "of the clips, written into the style")->required();
+  command.add_option("--attribution", options.attribution, "whom to name, written into the style");
+  command.add_option("--made-from", options.made_from, "what the clips are, written into the style");
+}
+
+void add_style_engines(CLI::App& command, StyleTraining& options) {
+  nn::StyleTrainOptions& words = options.words;
   command
       .add_option(
-          "--joints", options.joints,
-          "all (default), or trunk-and-limbs: ankles, toes and wrists stay the source's, as depth cameras "
-          "see them badly")
-      ->check(CLI::IsMember({"all", "trunk-and-limbs"}));
+          "--engine", options.engine,
+          "manner: fitted in seconds, OUT is .json (default); words: paper 4's network, OUT is .weights")
+      ->check(CLI::IsMember({"manner", "words"}));
+  command.add_option("--label", options.label, "what a list calls it (default: --to)");
+  command
+      .add_option(
+          "--joints", words.joints,
+          "all (default); trunk-and-limbs: ankles, toes and wrists stay the source's, as depth cameras "
+          "see them badly; upper-body: legs, too")
+      ->check(CLI::IsMember({"all", "trunk-and-limbs", "upper-body"}));
+  command.add_flag("--single", options.single,
+                   "each joint's movement gets a gain by itself; they are not coupled (manner)");
+  command
+      .add_option("--convolution", words.convolution,
+                  "joint: kernels of each joint's own (default); overall: over all joints (words)")
+      ->check(CLI::IsMember({"joint", "overall"}));
   const auto weight = [&](const char* name, double& value, const char* help) {
     command.add_option(name, value, help)->check(CLI::Range(0.0, 1000.0));
   };
-  weight("--cycle", options.cycle, "weight of the cycle loss (default: 15)");
-  weight("--coherence", options.coherence, "weight of the coherence loss (default: 30)");
-  weight("--transition", options.transition, "weight of the transition loss (default: 0)");
-  command.add_flag("--velocities", options.velocities,
-                   "coherence is judged against the source's, not by itself");
-  command.add_option("--smooth", options.smooth, "Gaussian over both domains' clips, frames (default: 1.5)")
-      ->check(CLI::Range(0.0, 6.0));
-  command.add_option("--licence", options.licence, "of the clips, written into the weights")->required();
-  command.add_option("--attribution", options.attribution, "whom to name, written into the weights");
-  command.add_option("--made-from", options.made_from, "what the clips are, written into the weights");
+  weight("--cycle", words.cycle, "weight of the cycle loss (words; default: 15)");
+  weight("--coherence", words.coherence, "weight of the coherence loss (words; default: 30)");
+  weight("--transition", words.transition, "weight of the transition loss (words; default: 0)");
+  command.add_flag("--velocities", words.velocities,
+                   "coherence is judged against the source's, not by itself (words)");
+}
+
+/// Fits a manner and writes it.
+int fit_style(const StyleTraining& options) {
+  const nn::StyleTrainOptions& words = options.words;
+  US_CHECK(file_suffix(words.out) == ".json", words.out, ": a manner is written as .json");
+  check_writable(words.out);
+  StyleLesson lesson;
+  lesson.from = words.data + "/" + words.from;
+  lesson.to = words.data + "/" + words.to;
+  lesson.joints = words.joints;
+  lesson.coupled = !options.single;
+  lesson.smooth = words.smooth;
+  lesson.note.label = options.label.empty() ? words.to : options.label;
+  lesson.note.sentence =
+      "Moves like the recordings of " + words.to + ", where the source moves like those of " + words.from;
+  lesson.note.licence = words.licence;
+  lesson.note.attribution = words.attribution;
+  lesson.note.made_from = words.made_from.empty() ? "recordings" : words.made_from;
+  NetworkParts parts;
+  parts.extractor = true;
+  Progress progress("style", 0, false, "recording");
+  const MannerFile file =
+      teach_style(lesson, nn::load_networks({}, parts), [&](size_t done, size_t, const std::string&) {
+        check_interrupt("nothing was written");
+        progress.step(static_cast<int64_t>(done));
+      });
+  progress.finish();
+  write_file(words.out, to_json(file));
+  std::printf("%s: %s\n", words.out.c_str(), file.origins.at("posture").source.c_str());
+  return 0;
+}
+
+void add_style(CLI::App& train, const std::shared_ptr<Action>& chosen) {
+  const auto options = std::make_shared<StyleTraining>();
+  CLI::App& command =
+      *train.add_subcommand(nn::StyleTrainOptions::kNetwork, "a style, from clips in two manners of moving");
+  add_common(command, options->words);
+  add_style_domains(command, options->words);
+  add_style_engines(command, *options);
+  command.callback([options, chosen] {
+    options->words.cancelled = interrupted;
+    *chosen = [options] {
+      return options->engine == "manner" ? fit_style(*options) : nn::train(options->words);
+    };
+  });
 }
 
 /// A subcommand of `train`: a network with the options that all have and its own.
@@ -122,7 +194,7 @@ Action declare_train(CLI::App& command) {
   add_network<nn::DeformationTrainOptions>(command, "skin weights and pose-corrective offsets", chosen);
   add_network<nn::MotionSpaceTrainOptions>(command, "what lies between known frames, and steps as codes",
                                            chosen);
-  add_network<nn::StyleTrainOptions>(command, "a style, from clips in two manners of moving", chosen);
+  add_style(command, chosen);
   return [chosen] { return (*chosen)(); };
 }
 

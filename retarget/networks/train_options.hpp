@@ -67,7 +67,7 @@ struct StyleTrainOptions : TrainOptions {
   std::string from,
       to;  ///< folders in the data folder: clips in the manner to be left, and in that to be taken
   std::string convolution = "joint";  ///< "joint": kernels of each joint's own; "overall": over all joints
-  std::string joints = "all";         ///< "all", or "trunk-and-limbs": without ankles, toes and wrists
+  std::string joints = "all";         ///< "all", "trunk-and-limbs", "upper-body": see fitted_joints()
   double cycle = 15, coherence = 30, transition = 0;  ///< weights of the losses, paper 4's
   bool velocities = false;                      ///< coherence is judged against the source's, not by itself
   double smooth = 1.5;                          ///< frames, the Gaussian that both domains go through

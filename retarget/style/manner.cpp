@@ -57,19 +57,13 @@ const Vec3& Follower::push(const Vec3& goal, float dt, float hertz, float dampin
   return at_;
 }
 
-float SlowMean::share(float dt) {
-  const float early = past_ > 0 ? dt / (past_ + dt) : 1.0f;
-  past_ = std::min(past_ + std::max(dt, 1e-4f), 1e3f);
-  return std::max(early, 1 - std::exp(-dt / seconds_));
-}
-
 MannerStyle::MannerStyle(const Manner& manner, float posture, float size, float liveliness)
     : manner_(manner), posture_(posture), size_(size), liveliness_(liveliness) {
   reset();
 }
 
 void MannerStyle::reset() {
-  slow_.reset();
+  movement_.reset();
   slow_height_.reset();
   started_ = false;
   next_.reset();
@@ -84,21 +78,35 @@ std::optional<Rotations> MannerStyle::pop() {
   return std::exchange(next_, std::nullopt);
 }
 
+/// The movements that the manner would make of the source's, all of it.
+JointTurns MannerStyle::wanted() const {
+  JointTurns made = movement_.turns();
+  for (int j = 0; j < kJointCount; ++j) made[j] *= std::pow(manner_.size[j], size_);
+  if (manner_.coupling) {
+    const auto& [joints, gains] = *manner_.coupling;
+    Eigen::VectorXf turns(gains.cols());
+    for (size_t k = 0; k < joints.size(); ++k)
+      turns.segment<3>(static_cast<Eigen::Index>(3 * k)) = movement_.turns()[joints[k]];
+    const Eigen::VectorXf coupled = turns + size_ * (gains * turns - turns);
+    for (size_t k = 0; k < joints.size(); ++k)
+      made[joints[k]] = coupled.segment<3>(static_cast<Eigen::Index>(3 * k));
+  }
+  for (int j = 0; j < kJointCount; ++j)
+    if (j != kMirror[j]) made[j] *= 1 + liveliness_ * manner_.uneven * (j < kMirror[j] ? 1.0f : -1.0f);
+  return made;
+}
+
 /// One joint's rotation styled; the pelvis' without its heading.
-Mat3 MannerStyle::joint(int j, const Mat3& local, float amount) {
-  using Quat = Eigen::Quaternionf;
-  Mat3& mean = means_[j];
-  mean = started_ ? Quat(mean).slerp(slow_share_, Quat(local)).normalized().toRotationMatrix() : local;
-  const bool left = j != kMirror[j] && j < kMirror[j], right = j != kMirror[j] && !left;
-  const float uneven = 1 + liveliness_ * manner_.uneven * (left ? 1.0f : right ? -1.0f : 0.0f);
-  const Vec3 movement = rotation_to_axis_angle(mean.transpose() * local);
-  const float wanted = std::pow(manner_.size[j], size_) * uneven;
+Mat3 MannerStyle::joint(int j, const Vec3& wanted, const Mat3& local, float amount) const {
+  const Mat3& mean = movement_.means()[j];
+  const Vec3& movement = movement_.turns()[j];
   // What is large already, an arm that is raised overhead, grows no more.
-  const float gain =
-      1 + amount * (wanted - 1) * (wanted > 1 ? 1 - smooth_step(kLarge, kLargest, movement.norm()) : 1);
+  const bool grows = wanted.dot(movement) > movement.squaredNorm();
+  const Vec3 turned = movement + amount * (grows ? 1 - smooth_step(kLarge, kLargest, movement.norm()) : 1) *
+                                     (wanted - movement);
   const Mat3 turn = rotation_from_axis_angle(amount * posture_ * manner_.posture[j]);
-  Mat3 result = mean * turn * rotation_from_axis_angle(gain * movement);
-  if (is_hinge(j) && gain > 1) {
+  Mat3 result = mean * turn * rotation_from_axis_angle(turned);
+  if (is_hinge(j) && grows) {
     const Vec3 bent = rotation_to_axis_angle(mean), now = rotation_to_axis_angle(result);
     const float along = bent.dot(now);
     if (along < 0 && bent.norm() > 1e-3f && rotation_to_axis_angle(local).dot(bent) >= 0)
@@ -108,19 +116,30 @@ Mat3 MannerStyle::joint(int j, const Mat3& local, float amount) {
 }
 
 Rotations MannerStyle::styled(const StyleFrame& frame) {
-  slow_share_ = slow_.share(frame.dt);
+  movement_.push(frame);
   slow_height_share_ = slow_height_.share(frame.dt);
-  const Mat3& pelvis = frame.pose.local[Pelvis];
-  const float amount = uprightness(pelvis);
-  const Mat3 heading = rotation_about_y(heading_of(pelvis));
+  const float amount = uprightness(frame.pose.local[Pelvis]);
+  const JointTurns wanted_turns = wanted();
   Rotations pose = frame.pose.local;
-  pose[Pelvis] = heading * joint(Pelvis, heading.transpose() * pelvis, amount);
-  for (int j = 1; j < kJointCount; ++j)
-    if (!is_of_leg(j)) pose[j] = joint(j, frame.pose.local[j], amount);
+  for (int j = 0; j < kJointCount; ++j)
+    if (!is_of_leg(j) || turns_legs()) pose[j] = joint(j, wanted_turns[j], frame.pose.local[j], amount);
+  pose[Pelvis] = movement_.heading() * pose[Pelvis];
   const Vec3 shift = enliven(frame, amount, pose);
-  place_legs(frame, amount, shift, pose);
+  if (turns_legs())
+    keep_feet(frame, pose);
+  else
+    place_legs(frame, amount, shift, pose);
   started_ = true;
   return pose;
+}
+
+/// Legs that were turned keep their feet turned as the source's.
+void MannerStyle::keep_feet(const StyleFrame& frame, Rotations& pose) const {
+  const Rotations was = global_rotations(frame.pose.local), is = global_rotations(pose);
+  for (const int side : {0, 1}) {
+    const Leg leg = Leg::of(side);
+    pose[leg.ankle] = is[leg.knee].transpose() * was[leg.ankle];
+  }
 }
 
 /// Ankles go where the style's steps take them beside the pelvis, which is shifted over them by `shift`
@@ -163,13 +182,13 @@ void MannerStyle::place_legs(const StyleFrame& frame, float amount, const Vec3& 
 Vec3 MannerStyle::enliven(const StyleFrame& frame, float amount, Rotations& pose) {
   const PosedSkeleton posed = forward_kinematics(frame.rest, frame.pose);
   const float leg = std::max(leg_length(frame.rest), 1e-4f);
-  const Mat3 heading = rotation_about_y(heading_of(frame.pose.local[Pelvis]));
+  const Mat3& heading = movement_.heading();
   Vec3 pull = Vec3::Zero();
   std::array<Vec3, 2> hands;
   for (size_t k = 0; k < kEnds.size(); ++k) {
     const Vec3 now =
         heading.transpose() * (posed.joints.row(kEnds[k]) - posed.joints.row(Pelvis)).transpose() / leg;
-    ends_[k] = started_ ? Vec3(ends_[k] + slow_share_ * (now - ends_[k])) : now;
+    ends_[k] = started_ ? Vec3(ends_[k] + movement_.slow_share() * (now - ends_[k])) : now;
     pull += kPull[k] * (now - ends_[k]);
     if (k < 2) hands[k] = now;
   }

@@ -2,10 +2,14 @@
 // Causal, no lag.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <optional>
+#include <vector>
 
 #include "retarget/pipeline/motion_style.hpp"
 #include "retarget/style/foot_level.hpp"
+#include "retarget/style/joint_movement.hpp"
 #include "retarget/style/pose_style.hpp"
 
 namespace understudy {
@@ -16,12 +20,24 @@ constexpr bool is_of_leg(int joint) {
          joint == LeftAnkle || joint == RightAnkle || joint == LeftFoot || joint == RightFoot;
 }
 
+/// How joints move together: what each joint's movement gets from the movements of all of these.
+struct Coupling {
+  std::vector<int> joints;
+  /// [3 joints, 3 joints]: rotation vectors about the slow posture, one below the other, become these times
+  /// it
+  Eigen::MatrixXf gains;
+  bool turns(int joint) const { return std::find(joints.begin(), joints.end(), joint) != joints.end(); }
+};
+
 /// The figures of a manner. Lengths are in legs (thigh plus shin of the source).
 struct Manner {
   /// turns of each joint's slow posture, radians, in the joint's own frame; the pelvis' in the body's heading
   std::array<Vec3, kJointCount> posture{};
-  /// of each joint's movement about its slow posture; 1 as the source. Legs are not turned but placed:
+  /// of each joint's movement about its slow posture; 1 as the source
   std::array<float, kJointCount> size{};
+  /// in place of `size`, of the joints that it has
+  std::optional<Coupling> coupling;
+  // Legs that no coupling turns are placed:
   float stride = 1;  ///< of steps
   float lift = 1;    ///< of how high feet are lifted
   float crouch = 0;  ///< legs by which the pelvis is lower
@@ -50,20 +66,8 @@ class Follower {
   Vec3 at_ = Vec3::Zero(), velocity_ = Vec3::Zero();
 };
 
-/// The slow part of what changes: the mean of the first seconds, later an exponential one.
-class SlowMean {
- public:
-  explicit SlowMean(float seconds = 1.5f) : seconds_(seconds) {}
-  /// The share by which the mean goes towards the newest, dt seconds after the one before.
-  float share(float dt);
-  void reset() { past_ = 0; }
-
- private:
-  float seconds_, past_ = 0;
-};
-
 /// Each joint's rotation is split into its slow posture and the movement about it; the posture is turned, the
-/// movement scaled. What sways follows hands and feet, so who stands still does not sway. A body that lies is
+/// movement scaled, or coupled with those of other joints. What sways follows hands and feet, so who stands still does not sway. A body that lies is
 /// left as it is.
 class MannerStyle final : public PoseStyle {
  public:
@@ -75,15 +79,18 @@ class MannerStyle final : public PoseStyle {
 
  private:
   Rotations styled(const StyleFrame& frame);
-  Mat3 joint(int j, const Mat3& local, float amount);
+  JointTurns wanted() const;
+  Mat3 joint(int j, const Vec3& wanted, const Mat3& local, float amount) const;
+  bool turns_legs() const { return manner_.coupling && manner_.coupling->turns(LeftHip); }
   Vec3 enliven(const StyleFrame& frame, float amount, Rotations& pose);
+  void keep_feet(const StyleFrame& frame, Rotations& pose) const;
   void place_legs(const StyleFrame& frame, float amount, const Vec3& shift, Rotations& pose) const;
 
   Manner manner_;
   float posture_, size_, liveliness_;
-  SlowMean slow_, slow_height_{0.5f};
-  float slow_share_ = 1, slow_height_share_ = 1;
-  Rotations means_ = identity_rotations();
+  JointMovement movement_;
+  SlowMean slow_height_{0.5f};
+  float slow_height_share_ = 1;
   std::array<Vec3, 4> ends_{};  // slow places of hands and feet beside the pelvis, in its heading, legs
   std::array<Vec3, 2> last_hands_{};
   std::array<float, 2> hand_speed_{};

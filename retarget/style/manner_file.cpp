@@ -18,7 +18,7 @@ constexpr int kVersion = 1;
 constexpr const char* kVersionKey = "understudy_style";
 constexpr const char* kJoints = "SMPL 22";
 constexpr float kDegree = kPi / 180;
-constexpr Within<float> kTurns_deg{-60, 60}, kSizes{0, 4};
+constexpr Within<float> kTurns_deg{-60, 60}, kSizes{0, 4}, kCoupled{-20, 20};
 
 /// A figure that is one number. `unit_is` of it is what the program computes with: radians for degrees.
 struct NumberRow {
@@ -99,7 +99,7 @@ void read_by_joint(const std::string& name, const Json& value, const std::string
     const std::string at = where + "." + joint;
     const std::vector<int> joints = joints_called(joint, at);
     for (const int j : joints) {
-      US_CHECK(!is_of_leg(j), at, " is of a leg: legs have stride, lift and crouch");
+      US_CHECK(!is_of_leg(j) || name == "posture", at, " is of a leg: legs have stride, lift and crouch");
       if (name == "size") {
         manner.size[j] = number(one, at, kSizes);
         continue;
@@ -110,12 +110,53 @@ void read_by_joint(const std::string& name, const Json& value, const std::string
   }
 }
 
+Coupling read_coupling(const Json& value, const std::string& where) {
+  US_CHECK(value.is_object() && value.size() == 2 && value.contains("joints") && value.contains("gains") &&
+               value["joints"].is_array() && value["gains"].is_array(),
+           where, " is not joints and gains");
+  Coupling coupling;
+  for (const Json& name : value["joints"]) {
+    US_CHECK(name.is_string(), where, ": a joint is not a name");
+    const int j = joint_named(name.get<std::string>());
+    US_CHECK(j >= 0, where, ": there is no joint '", name.get<std::string>(), "'");
+    US_CHECK(!coupling.turns(j), where, ": ", kJointNames[j], " is there twice");
+    coupling.joints.push_back(j);
+  }
+  const size_t count = 3 * coupling.joints.size();
+  US_CHECK(count > 0 && value["gains"].size() == count, where, " needs ", count, " rows of gains");
+  coupling.gains.resize(static_cast<Eigen::Index>(count), static_cast<Eigen::Index>(count));
+  for (size_t r = 0; r < count; ++r) {
+    const Json& row = value["gains"][r];
+    US_CHECK(row.is_array() && row.size() == count, where, ": row ", r, " has not ", count, " gains");
+    for (size_t c = 0; c < count; ++c)
+      coupling.gains(static_cast<Eigen::Index>(r), static_cast<Eigen::Index>(c)) =
+          number(row[c], where + ", row " + std::to_string(r), kCoupled);
+  }
+  return coupling;
+}
+
+/// Hips and knees go together, left as right; only a coupling turns legs.
+void check_legs(const Manner& manner, const std::string& path) {
+  const auto turned = [&](int j) { return manner.coupling && manner.coupling->turns(j); };
+  for (const int j : {LeftHip, RightHip, LeftKnee, RightKnee, LeftAnkle, RightAnkle, LeftFoot, RightFoot}) {
+    const bool is_foot = j >= LeftAnkle;
+    US_CHECK(!is_foot || !turned(j), path, ": coupling: ", kJointNames[j], " is of a foot");
+    US_CHECK(is_foot || turned(j) == turned(LeftHip), path, ": coupling: has some joints of the legs alone");
+    US_CHECK(manner.posture[j].isZero() || turned(j), path, ": posture.", kJointNames[j],
+             " is of a leg: legs have stride, lift and crouch");
+  }
+}
+
 void read_figure(const std::string& name, const Json& figure, const std::string& path, MannerFile& file) {
   const std::string where = path + ": " + name;
   FigureOrigin& origin = file.origins[name];
   if (name == "posture" || name == "size")
     return read_by_joint(name, value_of(figure, name == "size" ? "times" : "degrees", where, origin), where,
                          file.manner);
+  if (name == "coupling") {
+    file.manner.coupling = read_coupling(value_of(figure, "times", where, origin), where);
+    return;
+  }
   for (const NumberRow& row : kNumbers)
     if (name == row.name) {
       file.manner.*row.value =
@@ -158,6 +199,17 @@ Json size_json(const Manner& manner) {
   return json;
 }
 
+Json coupling_json(const Coupling& coupling) {
+  Json joints = Json::array(), gains = Json::array();
+  for (const int j : coupling.joints) joints.push_back(kJointNames[j]);
+  for (Eigen::Index r = 0; r < coupling.gains.rows(); ++r) {
+    Json row = Json::array();
+    for (const float gain : coupling.gains.row(r)) row.push_back(rounded(static_cast<double>(gain)));
+    gains.push_back(row);
+  }
+  return {{"joints", joints}, {"gains", gains}};
+}
+
 }  // namespace
 
 bool StyleNote::non_commercial() const {
@@ -192,6 +244,7 @@ MannerFile parse_manner(const std::string& source, const std::string& path) {
   const auto figures = json.find("figures");
   US_CHECK(figures != json.end() && figures->is_object(), path, ": has no figures");
   for (const auto& [name, figure] : figures->items()) read_figure(name, figure, path, file);
+  check_legs(file.manner, path);
   const size_t slash = path.find_last_of('/') + 1;  // 0 where there is none
   note.name = path.substr(slash, path.find_last_of('.') - slash);
   return file;
@@ -209,6 +262,8 @@ std::string to_json(const MannerFile& file) {
   Json& figures = json["figures"] = Json::object();
   for (const auto& [name, origin] : file.origins) {
     if (name == "posture") figures[name] = figure_json(posture_json(file.manner), "degrees", origin);
+    if (name == "coupling" && file.manner.coupling)
+      figures[name] = figure_json(coupling_json(*file.manner.coupling), "times", origin);
     if (name == "size") figures[name] = figure_json(size_json(file.manner), "times", origin);
     for (const NumberRow& row : kNumbers)
       if (name == row.name)

@@ -3,9 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "retarget/base/error.hpp"
 #include "retarget/math/rotation.hpp"
-#include "retarget/pipeline/human_rest.hpp"
 #include "retarget/skeleton/foot_contact.hpp"
 
 namespace understudy {
@@ -26,31 +24,13 @@ SkeletonStyle::SkeletonStyle(std::unique_ptr<PoseStyle> engine, float strength)
 
 void SkeletonStyle::reset() {
   engine_->reset();
-  locals_.reset(human_rest());
-  for (RunningMedian& length : lengths_) length.clear();
+  frames_.reset();
   waiting_.clear();
   root_.reset();
 }
 
-StyleFrame SkeletonStyle::frame_of(const Extraction& seen, float dt) {
-  const auto now = bone_lengths(seen.joints);
-  Eigen::Array<float, kJointCount, 1> usual = now, lengths = now;
-  for (int j = 1; j < kJointCount; ++j) {
-    lengths_[j].push(now[j]);
-    usual[j] = lengths_[j].value();
-  }
-  for (int j = 1; j < kJointCount; ++j) lengths[j] = 0.5f * (usual[j] + usual[kMirror[j]]);
-  StyleFrame frame;
-  frame.rest = rest_with_lengths(human_rest(), lengths);
-  frame.pose = {locals_.push(seen, dt), seen.joints.row(Pelvis).transpose()};
-  frame.dt = dt;
-  return frame;
-}
-
 void SkeletonStyle::push(const Extraction& seen, float dt) {
-  US_CHECK(seen.joints.allFinite() && leg_length(seen.joints) > 1e-4f,
-           "the skeleton has no legs to be styled by");
-  Waiting next{frame_of(seen, dt), seen};
+  Waiting next{frames_.push(seen, dt), seen};
   engine_->push(next.frame);
   waiting_.push_back(std::move(next));
 }

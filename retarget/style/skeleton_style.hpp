@@ -4,16 +4,14 @@
 #include <deque>
 #include <memory>
 
-#include "retarget/pipeline/copy_transfer.hpp"
 #include "retarget/pipeline/motion_style.hpp"
-#include "retarget/pipeline/running_median.hpp"
 #include "retarget/style/pose_style.hpp"
+#include "retarget/style/style_frames.hpp"
 #include "retarget/style/styled_root.hpp"
 
 namespace understudy {
 
-/// The source's local rotations (CopyTransfer) on its own bone lengths, as far as they are known by then,
-/// styled by the engine; between source and styled along the shortest arc by the strength; and the path that
+/// StyleFrames styled by the engine; between source and styled along the shortest arc by the strength; and the path that
 /// leads to.
 class SkeletonStyle final : public MotionStyle {
  public:
@@ -29,12 +27,10 @@ class SkeletonStyle final : public MotionStyle {
     StyleFrame frame;
     Extraction seen;
   };
-  StyleFrame frame_of(const Extraction& seen, float dt);
 
   std::unique_ptr<PoseStyle> engine_;
   float strength_;
-  CopyTransfer locals_;
-  std::array<RunningMedian, kJointCount> lengths_;
+  StyleFrames frames_;
   std::deque<Waiting> waiting_;
   StyledRoot root_;
 };

@@ -4,6 +4,7 @@
 #include "retarget/base/error.hpp"
 #include "retarget/base/log.hpp"
 #include "retarget/nn/modules/words_pair.hpp"
+#include "retarget/style/fit_manner.hpp"
 #include "retarget/training/losses/motion_losses.hpp"
 #include "retarget/training/losses/word_losses.hpp"
 #include "retarget/training/training_run.hpp"
@@ -27,9 +28,10 @@ Schedule words_schedule() {
 nn::WordsForm form_of(const nn::StyleTrainOptions& options, const WordPairs& pairs) {
   nn::WordsForm form;
   form.joints.fill(true);
-  if (options.joints == "trunk-and-limbs")  // what a depth camera sees badly stays the source's
-    for (const int j : {LeftAnkle, RightAnkle, LeftFoot, RightFoot, LeftWrist, RightWrist})
-      form.joints[static_cast<size_t>(j)] = false;
+  if (options.joints != "all") {  // what a depth camera sees badly stays the source's
+    form.joints.fill(false);
+    for (const int j : fitted_joints(options.joints)) form.joints[static_cast<size_t>(j)] = true;
+  }
   form.net.joints = std::count(form.joints.begin(), form.joints.end(), true);
   form.net.joint_wise = options.convolution == "joint";
   form.from = pairs.from_range();

@@ -1,0 +1,113 @@
+#include "retarget/style/fit_manner.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <cmath>
+
+#include "retarget/base/error.hpp"
+#include "retarget/math/rotation.hpp"
+#include "retarget/math/time_filter.hpp"
+
+namespace understudy {
+namespace {
+
+constexpr size_t kFewestFrames = 10;
+/// radians^2: what moves less than half a degree is not made to move by a gain.
+constexpr float kStill = 1e-4f;
+constexpr Within<float> kGains{0.25f, 4};
+
+/// f of a symmetric matrix's eigenvalues.
+template <class F>
+Eigen::MatrixXf by_eigenvalues(const Eigen::MatrixXf& matrix, F&& f) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXf> solver(matrix);
+  const Eigen::VectorXf values = solver.eigenvalues().unaryExpr(f);
+  return solver.eigenvectors() * values.asDiagonal() * solver.eigenvectors().transpose();
+}
+
+Eigen::MatrixXf transport(const Eigen::MatrixXf& from, const Eigen::MatrixXf& to) {
+  const auto root = [](float x) { return std::sqrt(std::max(x, 0.0f)); };
+  const auto inverse_root = [](float x) { return 1 / std::sqrt(std::max(x, kStill)); };
+  const auto still = kStill * Eigen::MatrixXf::Identity(from.rows(), from.cols());
+  const Eigen::MatrixXf a = from + still, half = by_eigenvalues(a, root),
+                        back = by_eigenvalues(a, inverse_root);
+  return back * by_eigenvalues(half * (to + still) * half, root) * back;
+}
+
+}  // namespace
+
+std::vector<int> fitted_joints(const std::string& which) {
+  US_CHECK(which == "all" || which == "trunk-and-limbs" || which == "upper-body", "there are no joints '",
+           which, "': all, trunk-and-limbs, upper-body");
+  std::vector<int> joints;
+  for (int j = 0; j < kJointCount; ++j) {
+    const bool leg = is_of_leg(j), foot = leg && j >= LeftAnkle, wrist = j == LeftWrist || j == RightWrist;
+    if (foot || (leg && which == "upper-body") || (wrist && which != "all")) continue;
+    joints.push_back(j);
+  }
+  return joints;
+}
+
+void MannerSample::add(const std::vector<StyleFrame>& clip) {
+  if (clip.size() < kFewestFrames) return;
+  std::vector<StyleFrame> smooth = clip;
+  double seconds = 0;
+  for (size_t t = 1; t < clip.size(); ++t) seconds += static_cast<double>(clip[t].dt);
+  const auto fps = static_cast<float>(static_cast<double>(clip.size() - 1) / std::max(seconds, 1e-3));
+  const auto half = half_gaussian(
+      std::min(1.0f, static_cast<float>(smooth_s_ / static_cast<double>(kSmoothestSeconds))), fps);
+  for (const int j : joints_) {
+    std::vector<Mat3> one;
+    for (const StyleFrame& frame : clip) one.push_back(frame.pose.local[j]);
+    one = filtered_rotations(one, half);
+    for (size_t t = 0; t < one.size(); ++t) smooth[t].pose.local[j] = one[t];
+  }
+  if (clips_++ == 0) {
+    const auto count = static_cast<Eigen::Index>(3 * joints_.size());
+    postures_.assign(joints_.size(), Mat3::Zero());
+    products_ = Eigen::MatrixXf::Zero(count, count);
+  }
+  JointMovement movement;
+  movement.reset();
+  Eigen::MatrixXf turns(products_.rows(), static_cast<Eigen::Index>(smooth.size()));
+  std::vector<Mat3> sums(joints_.size(), Mat3::Zero());
+  for (size_t t = 0; t < smooth.size(); ++t) {
+    movement.push(smooth[t]);
+    for (size_t k = 0; k < joints_.size(); ++k) {
+      const int j = joints_[k];
+      const Vec3& turn = movement.turns()[j];
+      turns.block<3, 1>(static_cast<Eigen::Index>(3 * k), static_cast<Eigen::Index>(t)) = turn;
+      sums[k] += movement.means()[j] * rotation_from_axis_angle(turn);
+    }
+  }
+  for (size_t k = 0; k < joints_.size(); ++k) postures_[k] += nearest_rotation(sums[k]);
+  products_ += turns * turns.transpose() / static_cast<float>(smooth.size());
+}
+
+Mat3 MannerSample::posture(size_t k) const {
+  return nearest_rotation(postures_[k]);
+}
+
+Eigen::MatrixXf MannerSample::covariance() const {
+  return products_ / static_cast<float>(clips_);
+}
+
+Manner fit_manner(const MannerSample& from, const MannerSample& to, bool coupled) {
+  for (const MannerSample* one : {&from, &to})
+    US_CHECK(one->clips() > 1, "a manner of moving is fitted to two recordings at least, there ",
+             one->clips() == 1 ? "is one" : "are none");
+  Manner manner;
+  const std::vector<int>& joints = from.joints();
+  const Eigen::MatrixXf a = from.covariance(), b = to.covariance();
+  for (size_t k = 0; k < joints.size(); ++k) {
+    const int j = joints[k];
+    manner.posture[j] = rotation_to_axis_angle(from.posture(k).transpose() * to.posture(k));
+    const auto at = static_cast<Eigen::Index>(3 * k);
+    const auto moves = [&](const Eigen::MatrixXf& of) {
+      return std::max(of.block<3, 3>(at, at).trace(), kStill);
+    };
+    if (!coupled) manner.size[j] = std::clamp(std::sqrt(moves(b) / moves(a)), kGains.low, kGains.high);
+  }
+  if (coupled) manner.coupling = {joints, transport(a, b)};
+  return manner;
+}
+
+}  // namespace understudy
