@@ -16,7 +16,7 @@ Action declare_cases(CLI::App& command) {
       ->required()
       ->check(CLI::IsMember({"naked", "clothed", "captured", "hands", "bends", "extraction", "occluded",
                              "partial", "sensors", "scenes", "inbetween", "predict", "sparse", "creatures",
-                             "creatures-captured", "creatures-pairs"}));
+                             "creatures-captured", "creatures-pairs", "style"}));
   command.add_option("--out", options->out, "folder that the cases go into")->required();
   command.add_option("--split", options->split,
                      "split of splits.json, of creatures dev or train (default: dev)");
@@ -40,6 +40,8 @@ Action declare_cases(CLI::App& command) {
       ->check(CLI::IsMember({0, 16}));
   command.add_flag("--walks", options->walks,
                    "walks and runs only, a window every 3 frames (inbetween, predict, sparse)");
+  command.add_option("--from", options->from, "folder in data of clips that are to be styled (style)");
+  command.add_option("--to", options->to, "folder in data of clips in the manner that is wanted (style)");
   command.add_option("--seed", options->seed, "seed of the random numbers");
   return [options, frames] {
     const bool creatures = is_creature_suite(options->suite);

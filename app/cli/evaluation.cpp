@@ -5,6 +5,7 @@
 #include <map>
 
 #include "app/cli/gap_evaluation.hpp"
+#include "app/cli/style_evaluation.hpp"
 #include "app/run/case_source.hpp"
 #include "app/run/file_figures.hpp"
 #include "app/run/interrupt.hpp"
@@ -196,7 +197,12 @@ struct Bench {
   const EvalOptions& options;
   std::shared_ptr<const FitBody> fit = {};  // null: no baseline
   std::shared_ptr<MotionSpace> space = {};  // made for the first case with gaps
+  std::unique_ptr<StyleEvaluation> style = {};  // made for the first case of the suite style
 
+  StyleEvaluation& styles() {
+    if (!style) style = std::make_unique<StyleEvaluation>(options);
+    return *style;
+  }
   MotionSpace& filling() {
     if (space) return *space;
     const bool plain = motion_space_named(options.fill).make;
@@ -364,6 +370,7 @@ void evaluate_rig_case(const EvalOptions& options, const Case& c, const RigTruth
 void evaluate_case(Bench& bench, const std::string& folder, const Case& c, CaseResult& result,
                    Breakdown& breakdown) {
   const EvalOptions& options = bench.options;
+  if (c.style) return bench.styles().evaluate(c, result);
   check_options(options, c);
   if (c.gaps) return evaluate_gap_case(bench, c, result);
   std::optional<Truth> truth;
@@ -471,6 +478,7 @@ Evaluation evaluate(const EvalOptions& options, const std::function<void(const C
   }
   evaluation.mean = mean_metrics(metrics);
   set_gap_means(evaluation);
+  if (bench.style) evaluation.style = bench.style->summary();
   return evaluation;
 }
 
@@ -495,6 +503,8 @@ Json report_of(const EvalOptions& options, const Evaluation& evaluation) {
     if (method.*one.value != Method().*one.value) report[one.name] = method.*one.value;
   if (method.path != Method().path) report["path"] = kRootNames[static_cast<size_t>(method.path)];
   for (const BoneTurn& turn : options.how.rest_pose) report["rest_pose"].push_back(turn_words(turn));
+  if (method.style.any()) report["style"] = style_json(method.style);
+  if (options.tempo.any()) report["tempo"] = options.tempo.tempo;
   if (options.restart_every > 0) report["restart_every"] = options.restart_every;
   report["cases"] = Json::array();
   for (const CaseResult& result : evaluation.results) report["cases"].push_back(case_json(result));
@@ -502,6 +512,7 @@ Json report_of(const EvalOptions& options, const Evaluation& evaluation) {
   report["ms"] = to_json(evaluation.latency, 0.5);
   report["ms_p95"] = to_json(evaluation.latency, 0.95);
   report["breakdown"] = evaluation.breakdown.json();
+  if (!evaluation.style.is_null()) report["style_figures"] = evaluation.style;
   return report;
 }
 

@@ -28,6 +28,11 @@ struct EvalOptions {
   std::string fill = kDefaultMotionSpace;  ///< of cases with gaps: one of motion_spaces()
   std::string data;                        ///< a data folder for those that need clips
   bool held_out = false;  ///< of bodies of any kind: figures of frames that the rig was not found in, too
+  // Of cases of the suite style, see StyleEvaluation:
+  std::string judge;       ///< weights of `train style-judge`; empty: nobody judges
+  std::string style_back;  ///< as --style: takes back what the style does; empty: none
+  TempoChoice tempo;       ///< of what is styled
+  double legs_m = 0;       ///< of who is to perform it, for the tempo "body"
   int worst = 20;         ///< frames listed as the worst
   ScanEdits edits;        ///< of each scan, before anybody is looked for
   MethodOptions how;
@@ -45,6 +50,7 @@ struct CaseResult {
 struct Evaluation {
   std::vector<CaseResult> results;
   Breakdown breakdown;
+  Json style;    ///< StyleEvaluation::summary()
   Metrics mean;  ///< over cases; what GapScore has is of all their gaps alike
   Latency latency;
   bool failed = false;  ///< some case

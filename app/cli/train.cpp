@@ -151,7 +151,7 @@ int fit_style(const StyleTraining& options) {
       });
   progress.finish();
   write_file(words.out, to_json(file));
-  std::printf("%s: %s\n", words.out.c_str(), file.origins.at("posture").source.c_str());
+  std::printf("%s: %s\n", words.out.c_str(), file.origins.at("coupling").source.c_str());
   return 0;
 }
 

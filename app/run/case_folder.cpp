@@ -136,6 +136,21 @@ std::optional<GapPlan> gaps_of(const nlohmann::json& json, const std::string& so
   return plan;
 }
 
+std::optional<StyleCase> style_of(const nlohmann::json& json, const std::string& path) {
+  if (!json.contains("style")) return std::nullopt;
+  const auto& style = json["style"];
+  US_CHECK(style.is_object(), path, ": \"style\" is no object");
+  const auto text = [&](const char* key) {
+    US_CHECK(style.contains(key) && style[key].is_string(), path, ": \"style\" has no text \"", key, "\"");
+    return style[key].get<std::string>();
+  };
+  StyleCase found{text("is"), text("wanted"), {}, text("subject")};
+  if (style.contains("contents") && style["contents"].is_array())
+    for (const auto& content : style["contents"])
+      if (content.is_string()) found.contents.push_back(content.get<std::string>());
+  return found;
+}
+
 }  // namespace
 
 Points Truth::frame_vertices(int64_t t) const {
@@ -181,6 +196,7 @@ Case read_case(const std::string& folder) {
     }
   }
   result.truth = text("truth");
+  result.style = style_of(json, path);
   if (json.contains("fps")) {
     US_CHECK(json["fps"].is_number() && json["fps"].get<double>() > 0, path,
              ": \"fps\" is not a positive number");

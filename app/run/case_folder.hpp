@@ -14,6 +14,14 @@
 
 namespace understudy::app {
 
+/// What a case of the suite style is about.
+struct StyleCase {
+  std::string is, wanted;             ///< the manner of the source, and the one that it is to be taken to
+  std::vector<std::string> contents;  ///< what is done, in a word and in a sentence; may be empty
+  std::string subject;                ///< who moves; empty: nobody knows
+  bool real() const { return is == wanted; }  ///< nothing is to be done: it is what others are compared with
+};
+
 struct Case {
   std::string name;
   double fps = 30;
@@ -25,6 +33,7 @@ struct Case {
   std::vector<std::string> alone;  ///< paths: each person of a scene, scanned alone by the same sensors
   std::vector<std::string> tags;
   std::optional<GapPlan> gaps = {};  ///< frames are to be made: these alone are evaluated
+  std::optional<StyleCase> style = {};  ///< how it is performed is evaluated, on its own bones
   /// Of two bodies of a kind, the second of which shall perform what the first did (`target` are its scans
   /// then): paths of its own truth, and of what it does under the first one's true angles; empty: none.
   std::string target_truth = {}, performed_truth = {};

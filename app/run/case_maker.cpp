@@ -15,6 +15,7 @@
 #include "app/run/interrupt.hpp"
 #include "app/run/report.hpp"
 #include "app/run/sparse_suite.hpp"
+#include "app/run/style_suite.hpp"
 #include "retarget/base/error.hpp"
 #include "retarget/base/index.hpp"
 #include "retarget/base/numpy_random.hpp"
@@ -388,6 +389,7 @@ std::vector<EvaluatedMotion> motions_of(const DataSplit& split) {
 
 int make_suite(const SuiteOptions& options, const std::function<void(const std::string&)>& done) {
   if (is_creature_suite(options.suite) && options.data.empty()) return make_creature_suite(options, {}, done);
+  if (options.suite == "style") return make_style_suite(options, done);
   DataSplit split = read_split(options.data, options.split);
   if (options.suite == "inbetween" || options.suite == "predict")
     return make_inbetween_suite(options, split, done);

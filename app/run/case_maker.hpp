@@ -8,11 +8,13 @@
 namespace understudy::app {
 
 struct SuiteOptions {
-  std::string data;  ///< folder with splits.json, see retarget/body/data_folder.hpp; creatures need none
+  std::string data;  ///< folder with splits.json, see retarget/body/data_folder.hpp; creatures need none,
+                     ///< style has two folders of clips there
   std::string out;   ///< folder; a case a folder is made in it
   std::string suite = "naked";  ///< see make_suite
   std::string split = "dev";
   std::string body;  ///< SMPL-format; empty: the data folder's own
+  std::string from, to;  ///< of style: folders in `data`, the manner that is left and the one that is taken
   int frames =
       90;  ///< of a case; extraction and occluded have 12, of hands, scenes, partial and sensors fewer
   int points = 8000;   ///< of a scan, roughly
@@ -49,6 +51,7 @@ struct SuiteOptions {
 ///     at most `frames` frames, gap after gap; the known frames have scans, the others' numbers are missing
 ///   predict: the same, but of each window the first 8 frames are known and the rest is not
 ///   sparse: see make_sparse_suite
+///   style: clips of people who are to move in another manner: see make_style_suite
 ///   creatures: robots, animals and hands made by code, with people where there is a data folder, as bodies
 ///     whose rig is to be found: see make_creature_suite. Truths hold the rig (rig_truth_file.hpp)
 ///   creatures-captured: the same as a rig of cameras would see them, scaled to a body of 1.5 m

@@ -94,8 +94,7 @@ MannerFile teach_style(const StyleLesson& lesson, const Networks& networks, cons
   const FigureOrigin origin{detail::join("fitted to ", taught[1].sample.clips(), " recordings of ", to,
                                          " and ", taught[0].sample.clips(), " of ", from),
                             ""};
-  file.origins["posture"] = origin;
-  file.origins[lesson.coupled ? "coupling" : "size"] = origin;
+  file.origins["coupling"] = origin;
   if (!taught[0].rises_s.empty() && !taught[1].rises_s.empty()) {
     file.stroke = static_cast<float>(
         std::clamp(median_of(taught[1].rises_s) / median_of(taught[0].rises_s), kStrokes.low, kStrokes.high));

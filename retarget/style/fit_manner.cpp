@@ -62,51 +62,46 @@ void MannerSample::add(const std::vector<StyleFrame>& clip) {
   }
   if (clips_++ == 0) {
     const auto count = static_cast<Eigen::Index>(3 * joints_.size());
-    postures_.assign(joints_.size(), Mat3::Zero());
+    postures_ = Eigen::VectorXf::Zero(count);
     products_ = Eigen::MatrixXf::Zero(count, count);
   }
   JointMovement movement;
-  movement.reset();
   Eigen::MatrixXf turns(products_.rows(), static_cast<Eigen::Index>(smooth.size()));
-  std::vector<Mat3> sums(joints_.size(), Mat3::Zero());
+  Eigen::VectorXf sum = Eigen::VectorXf::Zero(products_.rows());
   for (size_t t = 0; t < smooth.size(); ++t) {
     movement.push(smooth[t]);
     for (size_t k = 0; k < joints_.size(); ++k) {
-      const int j = joints_[k];
-      const Vec3& turn = movement.turns()[j];
-      turns.block<3, 1>(static_cast<Eigen::Index>(3 * k), static_cast<Eigen::Index>(t)) = turn;
-      sums[k] += movement.means()[j] * rotation_from_axis_angle(turn);
+      const auto at = static_cast<Eigen::Index>(3 * k);
+      const Vec3& turn = movement.movements()[joints_[k]];
+      turns.block<3, 1>(at, static_cast<Eigen::Index>(t)) = turn;
+      sum.segment<3>(at) += movement.means()[joints_[k]] + turn;
     }
   }
-  for (size_t k = 0; k < joints_.size(); ++k) postures_[k] += nearest_rotation(sums[k]);
+  postures_ += sum / static_cast<float>(smooth.size());
   products_ += turns * turns.transpose() / static_cast<float>(smooth.size());
-}
-
-Mat3 MannerSample::posture(size_t k) const {
-  return nearest_rotation(postures_[k]);
-}
-
-Eigen::MatrixXf MannerSample::covariance() const {
-  return products_ / static_cast<float>(clips_);
 }
 
 Manner fit_manner(const MannerSample& from, const MannerSample& to, bool coupled) {
   for (const MannerSample* one : {&from, &to})
     US_CHECK(one->clips() > 1, "a manner of moving is fitted to two recordings at least, there ",
              one->clips() == 1 ? "is one" : "are none");
-  Manner manner;
   const std::vector<int>& joints = from.joints();
   const Eigen::MatrixXf a = from.covariance(), b = to.covariance();
+  const Eigen::VectorXf held = to.posture() - from.posture();
+  Manner manner;
+  Coupling coupling{joints, Eigen::MatrixXf::Zero(a.rows(), a.cols()), {}};
+  coupling.offsets.fill(Vec3::Zero());
   for (size_t k = 0; k < joints.size(); ++k) {
-    const int j = joints[k];
-    manner.posture[j] = rotation_to_axis_angle(from.posture(k).transpose() * to.posture(k));
     const auto at = static_cast<Eigen::Index>(3 * k);
+    coupling.offsets[joints[k]] = held.segment<3>(at);
     const auto moves = [&](const Eigen::MatrixXf& of) {
       return std::max(of.block<3, 3>(at, at).trace(), kStill);
     };
-    if (!coupled) manner.size[j] = std::clamp(std::sqrt(moves(b) / moves(a)), kGains.low, kGains.high);
+    coupling.gains.diagonal().segment<3>(at).setConstant(
+        std::clamp(std::sqrt(moves(b) / moves(a)), kGains.low, kGains.high));
   }
-  if (coupled) manner.coupling = {joints, transport(a, b)};
+  if (coupled) coupling.gains = transport(a, b);
+  manner.coupling = coupling;
   return manner;
 }
 

@@ -23,21 +23,20 @@ class MannerSample {
   void add(const std::vector<StyleFrame>& clip);
   int clips() const { return clips_; }
   const std::vector<int>& joints() const { return joints_; }
-  /// Of each of the joints.
-  Mat3 posture(size_t k) const;
-  /// [3 joints, 3 joints] of the movements about the slow posture (JointMovement), radians^2.
-  Eigen::MatrixXf covariance() const;
+  /// [3 joints]: means of the rotation vectors, radians.
+  Eigen::VectorXf posture() const { return postures_ / static_cast<float>(clips_); }
+  /// [3 joints, 3 joints] of the movements (JointMovement), radians^2.
+  Eigen::MatrixXf covariance() const { return products_ / static_cast<float>(clips_); }
 
  private:
   std::vector<int> joints_;
   double smooth_s_;
   int clips_ = 0;
-  std::vector<Mat3> postures_;  // sums over clips of their mean rotations
+  Eigen::VectorXf postures_;  // sums over clips
   Eigen::MatrixXf products_;
 };
 
-/// The manner that makes the movements of `from` those of `to`: postures are turned by the difference of the
-/// means, and movements go through the linear map that takes their covariance to the other's and changes them
+/// The manner that makes the movements of `from` those of `to`: postures differ as the means do, and movements go through the linear map that takes their covariance to the other's and changes them
 /// least: the optimal transport between two Gaussians, A^-1/2 (A^1/2 B A^1/2)^1/2 A^-1/2 (Knott and Smith
 /// 1984). Correlations between joints become those of `to`, which gains of single joints cannot do.
 /// coupled false: a gain of each joint by itself. Both samples have the same joints. Throws Error where a

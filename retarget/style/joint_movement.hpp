@@ -21,15 +21,17 @@ class SlowMean {
 
 using JointTurns = std::array<Vec3, kJointCount>;  ///< rotation vectors, radians
 
-/// Causal. The pelvis is looked at without its heading.
+/// Causal. The pelvis is looked at without its heading. Rotations are looked at as rotation vectors from the
+/// T-pose, whose axes are the same in every posture: that a hand goes up as the trunk leans is so much of one
+/// for so much of the other, however the arm was held before.
 class JointMovement {
  public:
-  void reset();
+  void reset() { slow_.reset(), started_ = false; }
   void push(const StyleFrame& frame);
   /// The slow posture.
-  const Rotations& means() const { return means_; }
-  /// Of the newest frame: mean * turn is the joint's rotation.
-  const JointTurns& turns() const { return turns_; }
+  const JointTurns& means() const { return means_; }
+  /// Of the newest frame: rotation_from_axis_angle(mean + movement) is the joint's rotation.
+  const JointTurns& movements() const { return movements_; }
   const Mat3& heading() const { return heading_; }
   /// How far the slow posture went towards the newest frame.
   float slow_share() const { return share_; }
@@ -38,8 +40,7 @@ class JointMovement {
   SlowMean slow_;
   float share_ = 1;
   bool started_ = false;
-  Rotations means_ = identity_rotations();
-  JointTurns turns_{};
+  JointTurns means_{}, movements_{};
   Mat3 heading_ = Mat3::Identity();
 };
 

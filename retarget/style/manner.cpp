@@ -80,14 +80,15 @@ std::optional<Rotations> MannerStyle::pop() {
 
 /// The movements that the manner would make of the source's, all of it.
 JointTurns MannerStyle::wanted() const {
-  JointTurns made = movement_.turns();
+  JointTurns made = movement_.movements();
   for (int j = 0; j < kJointCount; ++j) made[j] *= std::pow(manner_.size[j], size_);
   if (manner_.coupling) {
-    const auto& [joints, gains] = *manner_.coupling;
-    Eigen::VectorXf turns(gains.cols());
+    const auto& joints = manner_.coupling->joints;
+    const Eigen::MatrixXf& gains = manner_.coupling->gains;
+    Eigen::VectorXf movements(gains.cols());
     for (size_t k = 0; k < joints.size(); ++k)
-      turns.segment<3>(static_cast<Eigen::Index>(3 * k)) = movement_.turns()[joints[k]];
-    const Eigen::VectorXf coupled = turns + size_ * (gains * turns - turns);
+      movements.segment<3>(static_cast<Eigen::Index>(3 * k)) = movement_.movements()[joints[k]];
+    const Eigen::VectorXf coupled = movements + size_ * (gains * movements - movements);
     for (size_t k = 0; k < joints.size(); ++k)
       made[joints[k]] = coupled.segment<3>(static_cast<Eigen::Index>(3 * k));
   }
@@ -96,21 +97,27 @@ JointTurns MannerStyle::wanted() const {
   return made;
 }
 
+Vec3 MannerStyle::offset(int j) const {
+  if (!manner_.coupling) return Vec3::Zero();
+  return posture_ * manner_.coupling->offsets[static_cast<size_t>(j)];
+}
+
 /// One joint's rotation styled; the pelvis' without its heading.
 Mat3 MannerStyle::joint(int j, const Vec3& wanted, const Mat3& local, float amount) const {
-  const Mat3& mean = movement_.means()[j];
-  const Vec3& movement = movement_.turns()[j];
+  const Vec3& mean = movement_.means()[j];
+  const Vec3& movement = movement_.movements()[j];
   // What is large already, an arm that is raised overhead, grows no more.
   const bool grows = wanted.dot(movement) > movement.squaredNorm();
   const Vec3 turned = movement + amount * (grows ? 1 - smooth_step(kLarge, kLargest, movement.norm()) : 1) *
                                      (wanted - movement);
-  const Mat3 turn = rotation_from_axis_angle(amount * posture_ * manner_.posture[j]);
-  Mat3 result = mean * turn * rotation_from_axis_angle(turned);
+  const Mat3 held = rotation_from_axis_angle(mean),
+             turn = rotation_from_axis_angle(amount * posture_ * manner_.posture[j]);
+  Mat3 result = held * turn * held.transpose() * rotation_from_axis_angle(mean + turned + amount * offset(j));
   if (is_hinge(j) && grows) {
-    const Vec3 bent = rotation_to_axis_angle(mean), now = rotation_to_axis_angle(result);
-    const float along = bent.dot(now);
-    if (along < 0 && bent.norm() > 1e-3f && rotation_to_axis_angle(local).dot(bent) >= 0)
-      result = rotation_from_axis_angle(now - along / bent.squaredNorm() * bent);
+    const Vec3 now = rotation_to_axis_angle(result);
+    const float along = mean.dot(now);
+    if (along < 0 && mean.norm() > 1e-3f && rotation_to_axis_angle(local).dot(mean) >= 0)
+      result = rotation_from_axis_angle(now - along / mean.squaredNorm() * mean);
   }
   return result;
 }

@@ -23,9 +23,9 @@ constexpr bool is_of_leg(int joint) {
 /// How joints move together: what each joint's movement gets from the movements of all of these.
 struct Coupling {
   std::vector<int> joints;
-  /// [3 joints, 3 joints]: rotation vectors about the slow posture, one below the other, become these times
-  /// it
+  /// [3 joints, 3 joints]: their movements (JointMovement), one below the other, become these times them
   Eigen::MatrixXf gains;
+  JointTurns offsets{};  ///< added to their rotation vectors, radians
   bool turns(int joint) const { return std::find(joints.begin(), joints.end(), joint) != joints.end(); }
 };
 
@@ -80,6 +80,7 @@ class MannerStyle final : public PoseStyle {
  private:
   Rotations styled(const StyleFrame& frame);
   JointTurns wanted() const;
+  Vec3 offset(int j) const;
   Mat3 joint(int j, const Vec3& wanted, const Mat3& local, float amount) const;
   bool turns_legs() const { return manner_.coupling && manner_.coupling->turns(LeftHip); }
   Vec3 enliven(const StyleFrame& frame, float amount, Rotations& pose);

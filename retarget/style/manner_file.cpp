@@ -17,6 +17,7 @@ using Json = nlohmann::ordered_json;
 constexpr int kVersion = 1;
 constexpr const char* kVersionKey = "understudy_style";
 constexpr const char* kJoints = "SMPL 22";
+constexpr const char* kCouplingUnit = "degrees and times";
 constexpr float kDegree = kPi / 180;
 constexpr Within<float> kTurns_deg{-60, 60}, kSizes{0, 4}, kCoupled{-20, 20};
 
@@ -99,7 +100,7 @@ void read_by_joint(const std::string& name, const Json& value, const std::string
     const std::string at = where + "." + joint;
     const std::vector<int> joints = joints_called(joint, at);
     for (const int j : joints) {
-      US_CHECK(!is_of_leg(j) || name == "posture", at, " is of a leg: legs have stride, lift and crouch");
+      US_CHECK(!is_of_leg(j), at, " is of a leg: legs have stride, lift and crouch");
       if (name == "size") {
         manner.size[j] = number(one, at, kSizes);
         continue;
@@ -111,15 +112,20 @@ void read_by_joint(const std::string& name, const Json& value, const std::string
 }
 
 Coupling read_coupling(const Json& value, const std::string& where) {
-  US_CHECK(value.is_object() && value.size() == 2 && value.contains("joints") && value.contains("gains") &&
-               value["joints"].is_array() && value["gains"].is_array(),
-           where, " is not joints and gains");
+  US_CHECK(value.is_object() && value.contains("joints") && value.contains("gains") &&
+               value.contains("offsets") && value.size() == 3 && value["joints"].is_array() &&
+               value["gains"].is_array() && value["offsets"].is_array(),
+           where, " is not joints, offsets and gains");
   Coupling coupling;
+  coupling.offsets.fill(Vec3::Zero());
   for (const Json& name : value["joints"]) {
     US_CHECK(name.is_string(), where, ": a joint is not a name");
     const int j = joint_named(name.get<std::string>());
     US_CHECK(j >= 0, where, ": there is no joint '", name.get<std::string>(), "'");
     US_CHECK(!coupling.turns(j), where, ": ", kJointNames[j], " is there twice");
+    const size_t k = coupling.joints.size();
+    US_CHECK(k < value["offsets"].size(), where, " needs offsets of each joint");
+    coupling.offsets[j] = turn_of(value["offsets"][k], where + ", offset of " + kJointNames[j]);
     coupling.joints.push_back(j);
   }
   const size_t count = 3 * coupling.joints.size();
@@ -142,8 +148,6 @@ void check_legs(const Manner& manner, const std::string& path) {
     const bool is_foot = j >= LeftAnkle;
     US_CHECK(!is_foot || !turned(j), path, ": coupling: ", kJointNames[j], " is of a foot");
     US_CHECK(is_foot || turned(j) == turned(LeftHip), path, ": coupling: has some joints of the legs alone");
-    US_CHECK(manner.posture[j].isZero() || turned(j), path, ": posture.", kJointNames[j],
-             " is of a leg: legs have stride, lift and crouch");
   }
 }
 
@@ -154,7 +158,7 @@ void read_figure(const std::string& name, const Json& figure, const std::string&
     return read_by_joint(name, value_of(figure, name == "size" ? "times" : "degrees", where, origin), where,
                          file.manner);
   if (name == "coupling") {
-    file.manner.coupling = read_coupling(value_of(figure, "times", where, origin), where);
+    file.manner.coupling = read_coupling(value_of(figure, kCouplingUnit, where, origin), where);
     return;
   }
   for (const NumberRow& row : kNumbers)
@@ -181,13 +185,17 @@ Json figure_json(const Json& value, const char* unit, const FigureOrigin& origin
   return figure;
 }
 
+Json turn_json(const Vec3& turn) {
+  Json json = Json::array();
+  for (const float angle : turn) json.push_back(rounded(static_cast<double>(angle / kDegree)));
+  return json;
+}
+
 Json posture_json(const Manner& manner) {
   Json json = Json::object();
   for (int j = 0; j < kJointCount; ++j) {
     if (manner.posture[j].isZero()) continue;
-    Json turn = Json::array();
-    for (const float angle : manner.posture[j]) turn.push_back(rounded(static_cast<double>(angle / kDegree)));
-    json[kJointNames[j]] = turn;
+    json[kJointNames[j]] = turn_json(manner.posture[j]);
   }
   return json;
 }
@@ -200,14 +208,17 @@ Json size_json(const Manner& manner) {
 }
 
 Json coupling_json(const Coupling& coupling) {
-  Json joints = Json::array(), gains = Json::array();
-  for (const int j : coupling.joints) joints.push_back(kJointNames[j]);
+  Json joints = Json::array(), offsets = Json::array(), gains = Json::array();
+  for (const int j : coupling.joints) {
+    joints.push_back(kJointNames[j]);
+    offsets.push_back(turn_json(coupling.offsets[j]));
+  }
   for (Eigen::Index r = 0; r < coupling.gains.rows(); ++r) {
     Json row = Json::array();
     for (const float gain : coupling.gains.row(r)) row.push_back(rounded(static_cast<double>(gain)));
     gains.push_back(row);
   }
-  return {{"joints", joints}, {"gains", gains}};
+  return {{"joints", joints}, {"offsets", offsets}, {"gains", gains}};
 }
 
 }  // namespace
@@ -263,7 +274,7 @@ std::string to_json(const MannerFile& file) {
   for (const auto& [name, origin] : file.origins) {
     if (name == "posture") figures[name] = figure_json(posture_json(file.manner), "degrees", origin);
     if (name == "coupling" && file.manner.coupling)
-      figures[name] = figure_json(coupling_json(*file.manner.coupling), "times", origin);
+      figures[name] = figure_json(coupling_json(*file.manner.coupling), kCouplingUnit, origin);
     if (name == "size") figures[name] = figure_json(size_json(file.manner), "times", origin);
     for (const NumberRow& row : kNumbers)
       if (name == row.name)
