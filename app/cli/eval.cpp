@@ -44,7 +44,13 @@ std::string one_line(const CaseResult& result) {
                           "gap_mpjpe_m",
                           "chamfer_m",
                           "seam_m",
-                          "spread"})
+                          "spread",
+                          "style_share",
+                          "coordination_share",
+                          "content_kept",
+                          "real_style_share",
+                          "dtw_deg",
+                          "jerk_ratio"})
     for (const auto& [name, value] : result.metrics)
       if (name == key) line += printed(", %s %.4g", key, value);
   return line;
@@ -90,8 +96,9 @@ Action declare_eval(CLI::App& command) {
           "fit: fit a body to each scan instead of extracting a skeleton; complete: fit one body to all "
           "known frames of a case at once, as --complete does (sparse); nodes: follow far-apart points of "
           "the "
-          "first frame instead of finding a rig (creatures)")
-      ->check(CLI::IsMember({"fit", "complete", "nodes"}));
+          "first frame instead of finding a rig (creatures); adain, action: a clip's own mean and spread, or "
+          "those of its action, become those of the wanted manner (style)")
+      ->check(CLI::IsMember({"fit", "complete", "nodes", "adain", "action"}));
   command
       .add_option("--file", options->file_shapes,
                   "evaluates the exported GLB, too, with this many morph targets: file_medl_mm, ...")
@@ -103,7 +110,14 @@ Action declare_eval(CLI::App& command) {
                       " (default: " + kDefaultMotionSpace + ")")
       ->check([](const std::string& name) { return failure_of([&] { motion_space_named(name); }); });
   command.add_option("--data", options->data,
-                     "the folder of people and motions that --fill nearest looks into");
+                     "the folder of people and motions that --fill nearest looks into; the folder with the clips of both "
+                     "manners, for the baselines of style");
+  command.add_option("--judge", options->judge, "weights of `train style-judge` (style)");
+  command.add_option("--style-back", options->style_back,
+                     "a style that takes back what --style does: there and back again (style)");
+  add_tempo_options(command, options->tempo);
+  command.add_option("--legs", options->legs_m, "for --tempo body: legs of who performs it, metres (style)")
+      ->check(CLI::Range(0.01, 100.0));
   command.add_flag("--held-out", options->held_out,
                    "finds rigs once more, in even frames alone, and poses them on the odd ones (creatures)");
   command.add_option("--worst", options->worst, "worst frames to list (default: 20)")
