@@ -24,7 +24,7 @@ struct JudgeForm {
 };
 
 struct JudgePartOptions {
-  int64_t channels = 1, classes = 2, width = 128;
+  int64_t channels = 1, classes = 2, width = 64;
   double dropout = 0.5;
 };
 
