@@ -109,9 +109,10 @@ Action declare_eval(CLI::App& command) {
                   "what makes the frames in a case's gaps. " + motion_space_help() +
                       " (default: " + kDefaultMotionSpace + ")")
       ->check([](const std::string& name) { return failure_of([&] { motion_space_named(name); }); });
-  command.add_option("--data", options->data,
-                     "the folder of people and motions that --fill nearest looks into; the folder with the clips of both "
-                     "manners, for the baselines of style");
+  command.add_option(
+      "--data", options->data,
+      "the folder of people and motions that --fill nearest looks into; the folder with the clips of both "
+      "manners, for the baselines of style");
   command.add_option("--judge", options->judge, "weights of `train style-judge` (style)");
   command.add_option("--style-back", options->style_back,
                      "a style that takes back what --style does: there and back again (style)");

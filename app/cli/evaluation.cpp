@@ -195,8 +195,8 @@ void evaluate_deformation(const Truth& truth, const Mesh& target, Deformer& defo
 /// What evaluates all cases alike.
 struct Bench {
   const EvalOptions& options;
-  std::shared_ptr<const FitBody> fit = {};  // null: no baseline
-  std::shared_ptr<MotionSpace> space = {};  // made for the first case with gaps
+  std::shared_ptr<const FitBody> fit = {};      // null: no baseline
+  std::shared_ptr<MotionSpace> space = {};      // made for the first case with gaps
   std::unique_ptr<StyleEvaluation> style = {};  // made for the first case of the suite style
 
   StyleEvaluation& styles() {

@@ -33,8 +33,8 @@ struct EvalOptions {
   std::string style_back;  ///< as --style: takes back what the style does; empty: none
   TempoChoice tempo;       ///< of what is styled
   double legs_m = 0;       ///< of who is to perform it, for the tempo "body"
-  int worst = 20;         ///< frames listed as the worst
-  ScanEdits edits;        ///< of each scan, before anybody is looked for
+  int worst = 20;          ///< frames listed as the worst
+  ScanEdits edits;         ///< of each scan, before anybody is looked for
   MethodOptions how;
 };
 

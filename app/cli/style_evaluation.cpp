@@ -59,8 +59,8 @@ StyledClip restyled(const StyledClip& clip, MotionStyle& style) {
 
 /// What smoothing takes away from each joint in each frame.
 std::vector<Rotations> residual_of(const StyledClip& clip) {
-  const auto half = half_gaussian(static_cast<float>(kNoiseSeconds) / kSmoothestSeconds,
-                                  static_cast<float>(clip.fps));
+  const auto half =
+      half_gaussian(static_cast<float>(kNoiseSeconds) / kSmoothestSeconds, static_cast<float>(clip.fps));
   std::vector<Rotations> residual(clip.poses.size());
   for (int j = 0; j < kJointCount; ++j) {
     std::vector<Mat3> turns;
@@ -140,7 +140,8 @@ const ChannelStatistics& StyleEvaluation::statistics(const std::string& manner) 
   if (found != statistics_.end()) return found->second;
   US_CHECK(!options_.data.empty(), "--baseline ", options_.baseline,
            " needs --data: the folder with the clips of both manners");
-  return statistics_.emplace(manner, ChannelStatistics(options_.data + "/" + manner, networks_)).first->second;
+  return statistics_.emplace(manner, ChannelStatistics(options_.data + "/" + manner, networks_))
+      .first->second;
 }
 
 /// In the style, or as the baseline does it, at the source's tempo.
@@ -150,7 +151,8 @@ StyledClip StyleEvaluation::styled(const Case& c, const StyledClip& clip) {
   if (options_.baseline == "action") {
     std::string content = c.style->contents.empty() ? "" : c.style->contents.front();
     if (!statistics(c.style->is).knows(content) || !statistics(c.style->wanted).knows(content)) content = "";
-    return with_statistics(clip, statistics(c.style->is).of(content), statistics(c.style->wanted).of(content));
+    return with_statistics(clip, statistics(c.style->is).of(content),
+                           statistics(c.style->wanted).of(content));
   }
   US_CHECK(options_.baseline.empty(), c.name, ": --baseline ", options_.baseline,
            " is not of cases of the suite style");
@@ -212,7 +214,8 @@ void StyleEvaluation::evaluate(const Case& c, CaseResult& result) {
   const auto began = std::chrono::steady_clock::now();
   StyledClip made = styled(c, source);
   FrameTimes times;
-  times.transfer = times.total = ms_since(began) / static_cast<double>(std::max<size_t>(1, made.poses.size()));
+  times.transfer = times.total =
+      ms_since(began) / static_cast<double>(std::max<size_t>(1, made.poses.size()));
   for (size_t t = 0; t < made.poses.size(); ++t) result.latency.add(times);
   const Metrics before_tempo = figures_of(made);
   Metrics& figures = result.metrics;

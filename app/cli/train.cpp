@@ -77,6 +77,23 @@ void add_own(CLI::App& command, nn::MotionSpaceTrainOptions& options) {
   command.add_flag("!--no-times", options.timed, "without time stamps" + of_paper);
 }
 
+/// Of weights that are learned from clips of one's own.
+template <class Options>
+void add_origin(CLI::App& command, Options& options) {
+  command.add_option("--licence", options.licence, "of the clips, written into the weights")->required();
+  command.add_option("--attribution", options.attribution, "whom to name, written into the weights");
+  command.add_option("--made-from", options.made_from, "what the clips are, written into the weights");
+}
+
+void add_own(CLI::App& command, nn::StyleJudgeTrainOptions& options) {
+  command
+      .add_option("--contents", options.contents,
+                  "what a clip shows: actions, its first one (default), or descriptions, its sentence")
+      ->check(CLI::IsMember({"actions", "descriptions"}));
+  command.add_flag("--legs", options.legs, "hips and knees are judged too; depth cameras do not see them");
+  add_origin(command, options);
+}
+
 /// A style of either engine.
 struct StyleTraining {
   nn::StyleTrainOptions words;
@@ -89,9 +106,7 @@ void add_style_domains(CLI::App& command, nn::StyleTrainOptions& options) {
   command.add_option("--to", options.to, "folder in DATA of clips in the manner to be taken")->required();
   command.add_option("--smooth", options.smooth, "Gaussian over both domains' clips, frames (default: 1.5)")
       ->check(CLI::Range(0.0, 6.0));
-  command.add_option("--licence", options.licence, "of the clips, written into the style")->required();
-  command.add_option("--attribution", options.attribution, "whom to name, written into the style");
-  command.add_option("--made-from", options.made_from, "what the clips are, written into the style");
+  add_origin(command, options);
 }
 
 void add_style_engines(CLI::App& command, StyleTraining& options) {
@@ -195,6 +210,8 @@ Action declare_train(CLI::App& command) {
   add_network<nn::MotionSpaceTrainOptions>(command, "what lies between known frames, and steps as codes",
                                            chosen);
   add_style(command, chosen);
+  add_network<nn::StyleJudgeTrainOptions>(command, "judges of style, from a folder of clips for each",
+                                          chosen);
   return [chosen] { return (*chosen)(); };
 }
 

@@ -16,7 +16,8 @@ constexpr float kLeastDeviation = 0.01f;  // radians: what is still is not made 
 /// [frames, 3 joints]; the pelvis' without its heading.
 RowMatrix channels_of(const StyledClip& clip) {
   const std::vector<int> joints = fitted_joints("all");
-  RowMatrix channels(static_cast<Eigen::Index>(clip.poses.size()), static_cast<Eigen::Index>(3 * joints.size()));
+  RowMatrix channels(static_cast<Eigen::Index>(clip.poses.size()),
+                     static_cast<Eigen::Index>(3 * joints.size()));
   for (size_t t = 0; t < clip.poses.size(); ++t)
     for (size_t k = 0; k < joints.size(); ++k) {
       Mat3 local = clip.poses[t].local[joints[k]];

@@ -10,6 +10,15 @@
 #include "retarget/formats/npz.hpp"
 
 namespace understudy {
+namespace {
+
+std::string info_of(const std::string& path) {
+  const Npz npz = read_npz(path);
+  const auto info = npz.find("info");
+  return info == npz.end() ? std::string() : info->second.text;
+}
+
+}  // namespace
 
 std::vector<std::string> clip_files(const std::string& folder) {
   std::vector<std::string> files;
@@ -61,9 +70,13 @@ std::vector<std::string> labels_of_info(const std::string& info) {
 }
 
 std::vector<std::string> clip_labels(const std::string& path) {
-  const Npz npz = read_npz(path);
-  const auto info = npz.find("info");
-  return info == npz.end() ? std::vector<std::string>{} : labels_of_info(info->second.text);
+  return labels_of_info(info_of(path));
+}
+
+std::string clip_description(const std::string& path) {
+  const auto json = nlohmann::json::parse(info_of(path), nullptr, /*allow_exceptions=*/false);
+  const bool says = json.is_object() && json.contains("desc") && json["desc"].is_string();
+  return says ? json["desc"].get<std::string>() : std::string();
 }
 
 }  // namespace understudy

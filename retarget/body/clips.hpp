@@ -32,5 +32,7 @@ std::vector<ClipRun> good_runs(const std::vector<Clip>& clips, int shortest, int
 std::vector<std::string> clip_labels(const std::string& path);
 /// The same of that text.
 std::vector<std::string> labels_of_info(const std::string& info);
+/// The same in a sentence ("desc"): "Wave your other hand". Empty where the file does not say.
+std::string clip_description(const std::string& path);
 
 }  // namespace understudy

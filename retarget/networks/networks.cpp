@@ -180,6 +180,10 @@ std::unique_ptr<MotionCoder> load_motion_coder(const std::string& folder) {
   return plugin().load_motion_coder(folder + "/motion_steps.weights");
 }
 
+std::unique_ptr<StyleJudge> load_style_judge(const std::string& path) {
+  return plugin().load_style_judge(path);
+}
+
 RuntimeReport runtime_report() {
   RuntimeReport report = plugin().report();
   const auto cores = std::thread::hardware_concurrency();

@@ -11,6 +11,7 @@
 #include "retarget/pipeline/motion_space.hpp"
 #include "retarget/pipeline/motion_style.hpp"
 #include "retarget/style/manner_file.hpp"
+#include "retarget/style/style_judge.hpp"
 
 namespace understudy::nn {
 
@@ -43,6 +44,10 @@ std::unique_ptr<MotionSpace> load_motion_space(const std::string& folder, const 
 /// What codes movements as points of a space, with the weights in that folder. Throws Error when they are
 /// missing or of another version.
 std::unique_ptr<MotionCoder> load_motion_coder(const std::string& folder);
+
+/// The judges of style of a weights file. Throws Error naming it when it is missing, damaged, of another
+/// network or of another version.
+std::unique_ptr<StyleJudge> load_style_judge(const std::string& path);
 
 /// The folder that weights are read from; empty when there is none.
 std::string weights_folder(const NetworkOptions& options);

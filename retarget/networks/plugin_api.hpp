@@ -8,7 +8,7 @@
 
 namespace understudy::nn {
 
-constexpr int kPluginVersion = 12;
+constexpr int kPluginVersion = 13;
 
 struct PluginApi {
   int version;
@@ -18,6 +18,7 @@ struct PluginApi {
   std::unique_ptr<MotionSpace> (*load_motion_space)(const std::string& path);
   std::unique_ptr<MotionCoder> (*load_motion_coder)(const std::string& path);
   std::unique_ptr<WordTranslator> (*load_words)(const std::string& path);
+  std::unique_ptr<StyleJudge> (*load_style_judge)(const std::string& path);
   RuntimeReport (*report)();
   int (*train)(const AnyTrainOptions& options);
 };

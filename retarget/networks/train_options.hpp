@@ -74,8 +74,18 @@ struct StyleTrainOptions : TrainOptions {
   std::string licence, attribution, made_from;  ///< written into the weights
 };
 
-using AnyTrainOptions = std::variant<SkeletonTrainOptions, PartTrainOptions, MotionTrainOptions,
-                                     DeformationTrainOptions, MotionSpaceTrainOptions, StyleTrainOptions>;
+/// `data` holds a folder of clips for each style, named so.
+struct StyleJudgeTrainOptions : TrainOptions {
+  static constexpr const char* kNetwork = "style-judge";
+  std::string contents =
+      "actions";      ///< "actions": a clip's first; "descriptions": the sentence it comes with
+  bool legs = false;  ///< hips and knees are judged too, which a depth camera does not see
+  std::string licence, attribution, made_from;  ///< written into the weights
+};
+
+using AnyTrainOptions =
+    std::variant<SkeletonTrainOptions, PartTrainOptions, MotionTrainOptions, DeformationTrainOptions,
+                 MotionSpaceTrainOptions, StyleTrainOptions, StyleJudgeTrainOptions>;
 
 /// Trains until the minutes or samples are used up, going on from the checkpoint where there is one. 0 when
 /// it came to the end, 1 when it was cancelled. Throws Error.

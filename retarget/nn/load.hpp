@@ -9,6 +9,7 @@
 #include "retarget/pipeline/motion_coder.hpp"
 #include "retarget/pipeline/motion_space.hpp"
 #include "retarget/style/motion_words.hpp"
+#include "retarget/style/style_judge.hpp"
 
 namespace understudy::nn {
 
@@ -27,5 +28,8 @@ std::unique_ptr<MotionCoder> load_step_coder(const std::string& path);
 
 /// Translates motion words by the network of paper 4 (WordsPair).
 std::unique_ptr<WordTranslator> load_words(const std::string& path);
+
+/// Judges style by three small networks (JudgeNet).
+std::unique_ptr<StyleJudge> load_judges(const std::string& path);
 
 }  // namespace understudy::nn

@@ -25,7 +25,7 @@ WeightsHeader header_of(const StoredWeights& stored) {
   return {stored.kind, stored.version, stored.numbers, stored.texts, {}};
 }
 
-torch::Tensor tensor_of(const StoredTensor& stored) {
+torch::Tensor filled_tensor(const StoredTensor& stored) {
   const auto options = torch::TensorOptions().dtype(stored.half ? torch::kFloat16 : torch::kFloat32);
   auto tensor = torch::empty(stored.shape, options);
   if (!stored.bytes.empty()) std::memcpy(tensor.data_ptr(), stored.bytes.data(), stored.bytes.size());
@@ -91,7 +91,7 @@ WeightsHeader load_weights(const std::string& path, const std::string& kind, int
     US_CHECK(found != stored.tensors.end(), path, ": has no '", name, "'");
     US_CHECK(tensor.sizes() == c10::IntArrayRef(found->second.shape), path, ": '", name,
              "' has another shape");
-    tensor.copy_(tensor_of(found->second));
+    tensor.copy_(filled_tensor(found->second));
   });
   return header;
 }

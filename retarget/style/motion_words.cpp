@@ -5,6 +5,7 @@
 
 #include "retarget/base/error.hpp"
 #include "retarget/math/rotation.hpp"
+#include "retarget/math/time_filter.hpp"
 
 namespace understudy {
 namespace {
@@ -32,6 +33,25 @@ void run(const Biquad& f, std::vector<double>& x) {
 }
 
 }  // namespace
+
+std::vector<Rotations> at_word_rate(const std::vector<Rotations>& local, double fps, double smooth_frames) {
+  US_CHECK(!local.empty() && fps > 0, "a motion without frames, or without a rate, has no words");
+  const auto last = static_cast<double>(local.size() - 1);
+  std::vector<size_t> frames;
+  for (double at = 0; at <= last + 1e-6; at += fps / static_cast<double>(kWordRate))
+    frames.push_back(static_cast<size_t>(std::min(last, at + 0.5)));
+  const auto strength =
+      static_cast<float>(smooth_frames / static_cast<double>(kWordRate * kSmoothestSeconds));
+  const std::vector<float> half = half_gaussian(std::min(1.0f, strength), kWordRate);
+  std::vector<Rotations> made(frames.size());
+  std::vector<Mat3> turns(frames.size());
+  for (int j = 0; j < kJointCount; ++j) {
+    for (size_t t = 0; t < frames.size(); ++t) turns[t] = local[frames[t]][j];
+    const std::vector<Mat3> smooth = filtered_rotations(turns, half);
+    for (size_t t = 0; t < frames.size(); ++t) made[t][j] = smooth[t];
+  }
+  return made;
+}
 
 Eigen::RowVectorXf word_row(const Rotations& local) {
   Eigen::RowVectorXf row(kWordNumbers);

@@ -7,6 +7,7 @@
 
 #include "retarget/base/error.hpp"
 #include "retarget/formats/npz.hpp"
+#include "retarget/formats/npz_writer.hpp"
 
 namespace understudy {
 namespace {
@@ -48,6 +49,20 @@ TEST_F(Clips, RunsHaveNoFlaggedFrame) {
   EXPECT_EQ(runs[1].first, 3);
   EXPECT_EQ(runs[1].count, 5);
   EXPECT_EQ(good_runs(clips, 2, 3).size(), 3u);  // 2, 3 and 2
+}
+
+TEST_F(Clips, SayInASentenceWhatTheyShow) {
+  const auto said = [&](const std::string& info) {
+    NpzWriter writer(folder + "/a.npz");
+    writer.add("info", info);
+    writer.finish();
+    return clip_description(folder + "/a.npz");
+  };
+  EXPECT_EQ(said(R"({"actions": ["wave"], "desc": "Wave your other hand"})"), "Wave your other hand");
+  EXPECT_EQ(said(R"({"desc": 3})"), "");
+  EXPECT_EQ(said("no JSON"), "");
+  write("b.npz", {0});
+  EXPECT_EQ(clip_description(folder + "/b.npz"), "");
 }
 
 TEST(ClipLabels, AreTheActionsOfTheInfo) {

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "retarget/base/error.hpp"
 #include "retarget/base/index.hpp"
 #include "retarget/body/builtin_motion.hpp"
 #include "retarget/math/rotation.hpp"
@@ -76,6 +77,20 @@ TEST(MotionWords, ARowKeepsTheRotationsAndTheHeadingIsGivenBack) {
     const Rotations again = rotations_of_row(word_row(pose.local), heading_of(pose.local[Pelvis]));
     for (int j = 0; j < kJointCount; ++j) EXPECT_LT(geodesic_angle(again[j], pose.local[j]), 1e-3f);
   }
+}
+
+TEST(MotionWords, AMotionOfAnotherRateTakesAsLong) {
+  for (const float fps : {15.0f, 30.0f, 60.0f, 100.0f}) {
+    std::vector<Rotations> local(static_cast<size_t>(2 * fps) + 1, identity_rotations());
+    for (size_t t = 0; t < local.size(); ++t)
+      local[t][Head] = rotation_from_axis_angle(Vec3(static_cast<float>(t) / fps, 0, 0));
+    const std::vector<Rotations> made = at_word_rate(local, static_cast<double>(fps), 1.5);
+    ASSERT_EQ(made.size(), 61u) << fps;
+    for (size_t t = 0; t < made.size(); ++t)
+      EXPECT_NEAR(rotation_to_axis_angle(made[t][Head]).x(), static_cast<float>(t) / kWordRate, 0.05f) << fps;
+  }
+  EXPECT_THROW(at_word_rate({}, 30, 1.5), Error);
+  EXPECT_THROW(at_word_rate({identity_rotations()}, 0, 1.5), Error);
 }
 
 TEST(MotionWords, WordsCoverAllFramesAThirdOfASecondApart) {
