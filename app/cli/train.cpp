@@ -151,11 +151,9 @@ int fit_style(const StyleTraining& options) {
   lesson.coupled = !options.single;
   lesson.smooth = words.smooth;
   lesson.note.label = options.label.empty() ? words.to : options.label;
-  lesson.note.sentence =
-      "Moves like the recordings of " + words.to + ", where the source moves like those of " + words.from;
   lesson.note.licence = words.licence;
   lesson.note.attribution = words.attribution;
-  lesson.note.made_from = words.made_from.empty() ? "recordings" : words.made_from;
+  lesson.note.made_from = words.made_from;
   NetworkParts parts;
   parts.extractor = true;
   Progress progress("style", 0, false, "recording");

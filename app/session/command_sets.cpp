@@ -102,6 +102,7 @@ void add_all_commands(Commands& commands) {
   add_source_commands(commands);
   add_take_commands(commands);
   add_style_commands(commands);
+  add_teach_commands(commands);
   add_playback_commands(commands);
   add_view_commands(commands);
   add_edit_commands(commands);

@@ -10,6 +10,7 @@ void add_document_commands(Commands& commands);
 void add_source_commands(Commands& commands);
 void add_take_commands(Commands& commands);
 void add_style_commands(Commands& commands);
+void add_teach_commands(Commands& commands);
 void add_playback_commands(Commands& commands);
 void add_view_commands(Commands& commands);
 void add_edit_commands(Commands& commands);

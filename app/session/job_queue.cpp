@@ -4,6 +4,7 @@
 #include <atomic>
 #include <chrono>
 #include <cmath>
+#include <mutex>
 #include <new>
 #include <system_error>
 #include <thread>
@@ -41,10 +42,16 @@ struct JobQueue::Job final : JobControl {
   std::atomic<bool> ended{false};  // `failed` and `problem` are written before, and read after
   bool failed = false;
   std::string problem;  // empty for a job that fails silently
+  mutable std::mutex telling;
+  std::string doing;  // under the mutex
   std::thread thread;
 
   void progress(float value) override {
     if (std::isfinite(value)) share = std::clamp(value, 0.0f, 1.0f);
+  }
+  void tell(const std::string& words) override {
+    const std::lock_guard lock(telling);
+    doing = words;
   }
   bool cancelled() const override { return cancel; }
 
@@ -72,6 +79,10 @@ struct JobQueue::Job final : JobControl {
     seen.id = id;
     seen.name = name;
     seen.progress = share;
+    {
+      const std::lock_guard lock(telling);
+      seen.doing = doing;
+    }
     seen.cancellable = !cancel;
     const double elapsed_s = std::chrono::duration<double>(Clock::now() - began).count();
     if (!cancel) seen.seconds_left = seconds_left(seen.progress, elapsed_s);

@@ -17,6 +17,8 @@ class JobControl {
   virtual ~JobControl() = default;
   /// 0..1.
   virtual void progress(float done) = 0;
+  /// What is done now, after the job's name: "recording 12 of 80".
+  virtual void tell(const std::string& doing) = 0;
   virtual bool cancelled() const = 0;
   /// Throws Cancelled once the user cancelled.
   void check() const;

@@ -24,6 +24,7 @@
 #include "app/session/settings.hpp"
 #include "app/session/shared_frames.hpp"
 #include "app/session/study_state.hpp"
+#include "app/session/styles_state.hpp"
 #include "app/session/view.hpp"
 #include "retarget/character/careful_deformer.hpp"
 
@@ -113,6 +114,7 @@ struct JobView {
   float progress = -1;       ///< 0..1; below 0: not known
   double seconds_left = -1;  ///< below 0: not known yet
   bool cancellable = true;
+  std::string doing{};  ///< "recording 12 of 80"; empty: it does not tell
 };
 
 /// What a notice offers to do about it: a button.
@@ -179,6 +181,7 @@ struct Session {
   MapState map;
   BonesState bones;
   SecondBodyState second;
+  StylesState styles;
   View view;
   Playback playback;
   Settings settings;

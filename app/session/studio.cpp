@@ -8,6 +8,7 @@
 
 #include "app/session/background.hpp"
 #include "app/session/command_sets.hpp"
+#include "app/session/taught_styles.hpp"
 #include "retarget/base/error.hpp"
 #include "retarget/base/index.hpp"
 #include "retarget/base/log.hpp"
@@ -52,6 +53,7 @@ Studio::Studio(StudioServices services)
   session_.study.history = StudyHistory(session_.settings.undo_depth);
   cache_.set_limit(session_.settings.cache_mb);
   add_all_commands(commands_);
+  session_.styles.taught = taught_styles(styles_folder(services_.settings_file));
   ask_about_autosaves();
   load_weights_name();
 }

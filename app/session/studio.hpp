@@ -84,6 +84,9 @@ class Studio {
   void end_autosave();
   /// The neighbouring vertices of a take's target; made on first use.
   const Neighbours& neighbours(size_t take);
+  /// A number that stays with a take while others come and go; and its place now, -1 once it is gone.
+  int64_t id_of_take(size_t take) const;
+  int take_with_id(int64_t id) const;
   void pause_work(bool paused);
   /// Redoes every frame.
   void restart_work();

@@ -107,9 +107,8 @@ bool same_poses(PoseEdits a, PoseEdits b) {
 }
 
 TakeState* Studio::take_of(int64_t id) {
-  const auto& ids = background_->take_ids;
-  const auto found = std::find(ids.begin(), ids.end(), id);
-  return found == ids.end() ? nullptr : &session_.takes[found - ids.begin()];
+  const int k = take_with_id(id);
+  return k < 0 ? nullptr : &session_.takes[k];
 }
 
 template <>
@@ -514,6 +513,16 @@ void Studio::take_in_results() {
   follow_bones();
   follow_second_body();
   measure_finished();
+}
+
+int64_t Studio::id_of_take(size_t take) const {
+  return background_->take_ids.at(take);
+}
+
+int Studio::take_with_id(int64_t id) const {
+  const auto& ids = background_->take_ids;
+  const auto found = std::find(ids.begin(), ids.end(), id);
+  return found == ids.end() ? -1 : static_cast<int>(found - ids.begin());
 }
 
 void Studio::pause_work(bool paused) {

@@ -124,6 +124,7 @@ using Facts = std::vector<std::pair<std::string, std::string>>;
 /// Of how the selected take is performed.
 Facts performance(const Session& session) {
   return {{"style", style(session)},
+          {"taught", std::to_string(session.styles.taught.size())},  // on this machine
           {"tempo", tempo(session)},
           {"tempo_marks", tempo_marks(session)},
           {"lasts", lasts(session)}};

@@ -12,9 +12,8 @@
 namespace understudy {
 namespace fs = std::filesystem;
 
-std::vector<MannerFile> bundled_styles() {
+std::vector<MannerFile> styles_in(const std::string& folder) {
   std::vector<MannerFile> styles;
-  const fs::path folder = program_files("styles");
   std::error_code failed;
   if (folder.empty()) return styles;
   for (const auto& entry : fs::directory_iterator(folder, failed)) {
@@ -25,6 +24,10 @@ std::vector<MannerFile> bundled_styles() {
   std::sort(styles.begin(), styles.end(),
             [](const auto& a, const auto& b) { return a.note.name < b.note.name; });
   return styles;
+}
+
+std::vector<MannerFile> bundled_styles() {
+  return styles_in(program_files("styles").string());
 }
 
 std::string style_file(const StyleChoice& choice) {

@@ -9,7 +9,10 @@
 
 namespace understudy {
 
-/// Those that come with the program, by their names. What cannot be read is left out and logged.
+/// Those in a folder, by their names; none where there is no such folder. What cannot be read is left out and
+/// logged.
+std::vector<MannerFile> styles_in(const std::string& folder);
+/// Those that come with the program.
 std::vector<MannerFile> bundled_styles();
 
 /// The file of a style, of whatever strength. Throws Error with the names that there are, or naming the file.

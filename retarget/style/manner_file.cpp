@@ -284,7 +284,8 @@ std::string to_json(const MannerFile& file) {
       if (name == row.name)
         figures[name] = figure_json(rounded(static_cast<double>(file.*row.value)), row.unit, origin);
   }
-  std::string text = json.dump(2) + "\n";
+  // names of folders may be no Unicode
+  std::string text = json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
   parse_manner(text, "the style");
   return text;
 }

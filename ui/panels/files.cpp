@@ -89,7 +89,21 @@ std::string second_body_name(const app::Session& session) {
   return fs::path(session.document.bones.second.path).stem().string() + " performs.glb";
 }
 
+/// The folder, or the next above it that is there.
+std::string there_of(const std::string& folder) {
+  std::error_code failed;
+  fs::path path = folder;
+  while (!path.empty() && !fs::is_directory(path, failed) && path != path.parent_path())
+    path = path.parent_path();
+  return path.string();
+}
+
 }  // namespace
+
+std::string folder_of_choice(const std::string& path) {
+  std::error_code failed;
+  return fs::is_directory(path, failed) ? path : fs::path(path).parent_path().string();
+}
 
 std::optional<FilePurpose> purpose_of(const std::string& dialog) {
   for (const FileDialog& one : kDialogs)
@@ -108,7 +122,7 @@ void choose_file(const app::Session& session, FilesState& state, FilePurpose pur
   const FileDialog& dialog = dialog_of(purpose);
   BrowseRequest request{dialog.title, dialog.accept, dialog.save, {filter_of(dialog.files)}, "", ""};
   state.purpose = purpose;
-  if (purpose == FilePurpose::StudyFolder) request.folder = name;
+  if (purpose == FilePurpose::Folder) request.folder = there_of(name);
   if (purpose == FilePurpose::Relocate || purpose == FilePurpose::BodyMotion)
     state.first = name, request.title += file_name(name);
   if (dialog.save) {
@@ -130,7 +144,7 @@ void choose_file(const app::Session& session, FilesState& state, FilePurpose pur
 
 std::optional<std::string> draw_files(const app::Session& session, PanelContext& context, FilesState& state) {
   std::optional<std::string> path = state.browser.draw(context.ui);
-  const bool comes_back = state.purpose == FilePurpose::Export || state.purpose == FilePurpose::StudyFolder;
+  const bool comes_back = state.purpose == FilePurpose::Export || state.purpose == FilePurpose::Folder;
   if (!path || comes_back) return path;
   if (state.purpose == FilePurpose::Source && is_smpl_body(*path)) {
     choose_file(session, state, FilePurpose::BodyMotion, *path);

@@ -39,8 +39,8 @@ enum class FilePurpose {
   TrialsJsPsych,
   TrialsPsychoPy,
   Stimuli,
-  StudyFolder,  ///< comes back to the dialog that shows the study; one of its files stands for it
-  Export        ///< comes back to the export dialog
+  Folder,  ///< comes back to the dialog that asked
+  Export   ///< comes back to the export dialog
 };
 
 struct FilesState {
@@ -54,8 +54,11 @@ std::optional<FilePurpose> purpose_of(const std::string& dialog);
 /// The dialog that asks for the path of a command; null where there is none.
 const char* file_dialog_for(const std::string& command);
 
+/// The folder that the browser gave, or that of the file that it gave: one of its files stands for a folder.
+std::string folder_of_choice(const std::string& path);
+
 /// Opens the browser. `name`: when saving, the path proposed; Relocate: the old place;
-/// BodyMotion: the body.
+/// BodyMotion: the body; Folder: that of now.
 void choose_file(const app::Session& session, FilesState& state, FilePurpose purpose,
                  const std::string& name = {});
 

@@ -24,14 +24,17 @@ std::string licence_words(const StyleNote& note) {
   return note.licence + (note.non_commercial() ? ", non-commercial" : "");
 }
 
-void draw_style_choice(const StyleList& list, const StyleChoice& style, PanelContext& context,
-                       const std::string& k) {
+/// Those that come with the program, then those that were taught, then a file that is neither.
+void draw_style_choice(const StyleList& list, const app::StylesState& kept, const StyleChoice& style,
+                       PanelContext& context, const std::string& k) {
   std::vector<std::string> words = {"none"}, labels = {"None"}, tips = {"As the source moves"};
-  for (const StyleNote& note : list.notes) {
-    words.push_back(note.name), labels.push_back(note.label);
+  const auto add = [&](const StyleNote& note, const std::string& word) {
+    words.push_back(word), labels.push_back(note.label);
     tips.push_back(note.sentence + ". Made from: " + note.made_from + ". Licence: " + licence_words(note));
-  }
-  if (!style.file.empty())
+  };
+  for (const StyleNote& note : list.notes) add(note, note.name);
+  for (const app::TaughtStyle& taught : kept.taught) add(taught.note, taught.file);
+  if (!style.file.empty() && app::taught_style(kept, style.file) == nullptr)
     words.push_back(style.file), labels.push_back(file_name(style.file)), tips.push_back(style.file);
   ask_choice(context,
              {"performance.style", "Style", "How the motion is performed, whatever is done",
@@ -54,6 +57,16 @@ void draw_shares(const StyleChoice& style, PanelContext& context, const std::str
                {std::string("performance.") + share.name, share.label, share.explanation,
                 std::string("method.style_") + share.name + " " + k},
                share.value, {kStyleStrengths.low, kStyleStrengths.high, 0.005f, "%.2f", 1, true});
+}
+
+/// While a style is being taught how far that is; else a button for it.
+void draw_teaching(const app::Session& session, PanelContext& context) {
+  for (const app::JobView& job : session.jobs)
+    if (job.id == session.styles.job)
+      return job_progress(session, context, "performance.teaching", job.id, job.progress,
+                          job.doing.empty() ? job.name : job.doing);
+  ask_button(context, {"performance.teach", "Teach a style\u2026", "Fits a style to recordings of your own",
+                       "dialog.open teach_style"});
 }
 
 /// A body much smaller than the performer's floats at the performer's tempo.
@@ -145,7 +158,7 @@ void draw_performance(const app::Session& session, PanelContext& context) {
     list.read();
     const std::string k = std::to_string(session.selected_take);
     const StyleChoice& style = take->method.style;
-    draw_style_choice(list, style, context, k);
+    draw_style_choice(list, session.styles, style, context, k);
     if (!style.called().empty()) draw_shares(style, context, k);
     ButtonRow buttons(2);
     buttons.ask(context,
@@ -154,6 +167,7 @@ void draw_performance(const app::Session& session, PanelContext& context) {
                 {"performance.compare", "Compare", "Adds a take without the style beside this one",
                  "compare.add " + k + " style=none"},
                 style.any());
+    draw_teaching(session, context);
     draw_hint(*take, selected_state(session), context, k);
   }
   draw_tempo(session, *take, context);

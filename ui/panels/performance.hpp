@@ -1,5 +1,6 @@
 // How the selected target performs: its style, and its tempo. Sections: inspector.performance,
-// inspector.tempo. Marks: performance.style, .strength, .posture, .size, .liveliness, .open, .compare;
+// inspector.tempo. Marks: performance.style, .strength, .posture, .size, .liveliness, .open, .compare,
+// .teach, .teaching (the job);
 // tempo.by (.0 the source's, .1 the body's, .2 a number), tempo.length, .anticipation, .stroke, .recovery,
 // .spread, .of_style, .mark, .falls (the hint's button).
 #pragma once

@@ -69,6 +69,25 @@ bool method_row(Ui& ui, const Control& control, const MethodChoices& choices, st
   return changed;
 }
 
+bool folder_row(Ui& ui, const Control& control, const std::string& hint, std::string& folder) {
+  row(ui, control.label, control.explanation);
+  const IdScope id(control.name);
+  const float side = ImGui::GetFrameHeight();
+  ImGui::BeginChild("##path", {std::max(1.f, ImGui::GetContentRegionAvail().x - side - ui.px(6)), side});
+  text_field(ui, control.name, folder, hint);
+  if (!folder.empty()) tooltip(ui, folder);
+  ImGui::EndChild();
+  ImGui::SameLine(0, ui.px(6));
+  return icon_button(ui, control.name + ".browse", Icon::Folder,
+                     {"Choose the folder", "", false, false, side / ui.scale()});
+}
+
+void warning_sentence(Ui& ui, const std::string& sentence) {
+  icon_label(ui, Icon::Warning, ui.theme().warning);
+  ImGui::SameLine();
+  paragraph(sentence);
+}
+
 std::optional<std::string> text_row(Ui& ui, const Control& control, const std::string& value,
                                     const std::string& hint) {
   row(ui, control.label, control.explanation);

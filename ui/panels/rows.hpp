@@ -35,6 +35,8 @@ bool method_row(Ui& ui, const Control& control, const MethodChoices& choices, st
 /// Changes on Enter or when the field loses focus: for values that cost work. Nothing while the value stays.
 std::optional<std::string> text_row(Ui& ui, const Control& control, const std::string& value,
                                     const std::string& hint = {});
+/// A folder to type or to choose. True when the user wants to choose it. Marks: NAME, NAME.browse.
+bool folder_row(Ui& ui, const Control& control, const std::string& hint, std::string& folder);
 /// As text_row; ignores text that is not a number.
 std::optional<double> typed_number_row(Ui& ui, const Control& control, double value, int decimals = 2);
 
@@ -63,6 +65,8 @@ void tool_button(const app::Session& session, PanelContext& context, const Contr
 /// What the brush of the painting tool is like. Marks: PREFIX.brush_radius, .brush_strength, .brush_mode.
 void brush_rows(const app::Session& session, PanelContext& context, const std::string& prefix);
 
+/// A sentence with a warning sign before it.
+void warning_sentence(Ui& ui, const std::string& sentence);
 /// A small square of a colour, before what follows on the line.
 void color_chip(Ui& ui, const ImVec4& of);
 

@@ -10,11 +10,15 @@
 namespace understudy::ui {
 namespace {
 
+std::string words_of(const app::JobView& job) {
+  return job.doing.empty() ? job.name : job.name + ", " + job.doing;
+}
+
 void draw_job(const app::Session& session, PanelContext& context, float width) {
   Ui& ui = context.ui;
   const app::JobView& job = session.jobs.front();
   ImGui::BeginChild("##job", {width, ui.px(kStatusHeight - 6)});
-  std::string words = job.name;
+  std::string words = words_of(job);
   if (session.jobs.size() > 1) words += " (+" + std::to_string(session.jobs.size() - 1) + ")";
   job_progress(session, context, "status.job", job.id, job.progress, words);
   ImGui::EndChild();
@@ -42,7 +46,8 @@ void draw_more_jobs(const app::Session& session, PanelContext& context) {
   ImGui::SetNextWindowSize({ui.px(320), 0});
   if (!ImGui::BeginPopup("jobs")) return;
   for (const app::JobView& job : session.jobs)
-    job_progress(session, context, "status.job." + std::to_string(job.id), job.id, job.progress, job.name);
+    job_progress(session, context, "status.job." + std::to_string(job.id), job.id, job.progress,
+                 words_of(job));
   ImGui::EndPopup();
 }
 

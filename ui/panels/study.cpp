@@ -61,11 +61,11 @@ void draw_size(const app::StudyState& state, Ui& ui) {
     paragraph(app::size_in_words(*state.study) + ".");
     ui.mark("study.size");
   } else {
-    study_warning(ui, "Cannot be run yet: " + state.problem + ".");
+    warning_sentence(ui, "Cannot be run yet: " + state.problem + ".");
     ui.mark("study.problem");
   }
   if (state.gone.empty()) return;
-  study_warning(ui, state.gone + ".");
+  warning_sentence(ui, state.gone + ".");
   ui.mark("study.gone");
 }
 
@@ -297,12 +297,6 @@ void study_choice(PanelContext& context, const std::string& setting, const std::
   Control control = control_of(setting);
   control.tips = tips;
   ask_choice(context, control, labels, words, chosen);
-}
-
-void study_warning(Ui& ui, const std::string& sentence) {
-  icon_label(ui, Icon::Warning, ui.theme().warning);
-  ImGui::SameLine();
-  paragraph(sentence);
 }
 
 void draw_study(const app::Session& session, PanelContext& context) {

@@ -25,9 +25,6 @@ void study_choice(PanelContext& context, const std::string& setting, const std::
                   const std::vector<std::string>& words, const std::string& chosen,
                   const std::vector<std::string>& tips = {});
 
-/// A sentence with a warning sign before it.
-void study_warning(Ui& ui, const std::string& sentence);
-
 // The sections. A study is open.
 
 void draw_study_conditions(const app::Session& session, PanelContext& context);

@@ -7,39 +7,15 @@
 #include "retarget/base/text.hpp"
 #include "ui/panels/dialogs.hpp"
 #include "ui/panels/rows.hpp"
-#include "ui/panels/study.hpp"
 
 namespace understudy::ui {
 namespace fs = std::filesystem;
 namespace {
 
-/// A folder to type or to choose. True when the user wants to choose it.
-bool folder_row(Ui& ui, const Control& control, const std::string& hint, std::string& folder) {
-  row(ui, control.label, control.explanation);
-  const IdScope id(control.name);
-  const float side = ImGui::GetFrameHeight();
-  ImGui::BeginChild("##path", {std::max(1.f, ImGui::GetContentRegionAvail().x - side - ui.px(6)), side});
-  text_field(ui, control.name, folder, hint);
-  if (!folder.empty()) tooltip(ui, folder);
-  ImGui::EndChild();
-  ImGui::SameLine(0, ui.px(6));
-  return icon_button(ui, control.name + ".browse", Icon::Folder,
-                     {"Choose the folder", "", false, false, side / ui.scale()});
-}
-
-/// The folder, or the next above it that is there.
-std::string there_of(const std::string& folder) {
-  std::error_code failed;
-  fs::path path = folder;
-  while (!path.empty() && !fs::is_directory(path, failed) && path != path.parent_path())
-    path = path.parent_path();
-  return path.string();
-}
-
 void draw_folders(Ui& ui, const app::Session& session, StudyFormState& state, FilesState& files) {
   const auto browse = [&](bool clips) {
     state.browses_clips = clips;
-    choose_file(session, files, FilePurpose::StudyFolder, there_of(clips ? state.clips : state.folder));
+    choose_file(session, files, FilePurpose::Folder, clips ? state.clips : state.folder);
   };
   if (folder_row(ui, {"study_form.clips", "Clips", "The folder into which the stimuli were rendered"},
                  "render the stimuli first", state.clips))
@@ -79,8 +55,7 @@ bool begin_study_form(const app::Session& session, StudyFormState& state, const 
 }
 
 void choose_study_folder(StudyFormState& state, const std::string& path) {
-  std::error_code failed;
-  const std::string folder = fs::is_directory(path, failed) ? path : fs::path(path).parent_path().string();
+  const std::string folder = folder_of_choice(path);
   (state.browses_clips ? state.clips : state.folder) = folder;
   if (state.runs && !state.browses_clips) state.participant = app::next_participant(folder);
 }
@@ -97,7 +72,7 @@ bool draw_study_form(const app::Session& session, PanelContext& context, StudyFo
   draw_folders(ui, session, state, files);
   const std::string problem = app::why_not_shown(session.study);
   if (!problem.empty()) {
-    study_warning(ui, "Not yet: " + problem + ".");
+    warning_sentence(ui, "Not yet: " + problem + ".");
     ui.mark("study_form.problem");
   }
   ImGui::Dummy({0, ui.px(4)});

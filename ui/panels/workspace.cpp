@@ -200,22 +200,29 @@ void Workspace::open_dialog(const app::Session& session, const std::string& name
   const bool exports = begin_export(session, export_, name);
   const bool shows_study = begin_study_form(session, study_form_, name);
   if (name == "about" && services_.about) about_ = services_.about();
-  const auto known = {"compare", "settings", "about", "keys", "here", "none"};
+  const auto known = {"compare", "teach_style", "settings", "about", "keys", "here", "none"};
   US_CHECK(exports || shows_study || std::find(known.begin(), known.end(), name) != known.end(),
            "there is no dialog ", name);
   dialog_ = exports ? "export" : shows_study ? "study_form" : name == "none" ? "" : name;
   here_.reset();
 }
 
+/// For the dialog that asked.
+void Workspace::choose_folder(const std::string& path) {
+  if (dialog_ == "study_form") choose_study_folder(study_form_, path);
+  if (dialog_ == "teach_style") choose_manner_folder(teach_, path);
+}
+
 void Workspace::draw_dialog(const app::Session& session, PanelContext& context) {
   if (export_failed(session, export_)) dialog_ = "export";
+  if (teaching_failed(session, teach_)) dialog_ = "teach_style";
   const bool any = !session.errors.empty() || session.question || !dialog().empty();
   if (draw_error(session, context)) {
     // One after the other: what else is open comes back when the error was read.
   } else if (files_.browser.is_open()) {
     const auto path = draw_files(session, context, files_);
     if (path && files_.purpose == FilePurpose::Export) choose_path(export_, *path);
-    if (path && files_.purpose == FilePurpose::StudyFolder) choose_study_folder(study_form_, *path);
+    if (path && files_.purpose == FilePurpose::Folder) choose_folder(*path);
   } else if (session.question) {
     draw_question(session, context, files_);
   } else {
@@ -226,6 +233,7 @@ void Workspace::draw_dialog(const app::Session& session, PanelContext& context) 
     if (dialog_ == "about") stays = draw_about(context, about_);
     if (dialog_ == "keys") stays = draw_keys(session, context);
     if (dialog_ == "here") stays = draw_help_here(context, here_);
+    if (dialog_ == "teach_style") stays = draw_teach_style(session, context, teach_, files_);
     if (dialog_ == "compare") stays = draw_compare(session, context, compare_);
     if (!stays) dialog_.clear();
   }

@@ -15,6 +15,7 @@
 #include "ui/panels/getting_started.hpp"
 #include "ui/panels/start.hpp"
 #include "ui/panels/study_forms.hpp"
+#include "ui/panels/teach_style.hpp"
 
 namespace understudy::ui {
 
@@ -35,8 +36,8 @@ class Workspace {
   void draw(const app::Session& session, PanelContext& context, float frame_rate = 0);
 
   /// open, open_source, blend_with, map_folder, source_times, source_markers, open_target, replace_target,
-  /// open_document, save_as, export, csv, picture, video, compare, settings, about, keys, here (help for what
-  /// the pointer is on), and those of a study that files.cpp lists; "none" closes.
+  /// open_document, save_as, export, csv, picture, video, compare, teach_style, settings, about, keys,
+  /// here (help for what the pointer is on), and those of a study that files.cpp lists; "none" closes.
   /// Throws Error for another name.
   void open_dialog(const app::Session& session, const std::string& name);
   /// Opens a menu of the bar by its name, "" the first, or closes the one that is open.
@@ -58,6 +59,7 @@ class Workspace {
   void draw_below(const app::Session& session, PanelContext& context);
   void place_parts(const app::Session& session, PanelContext& context);
   void draw_bottom(const app::Session& session, PanelContext& context, float frame_rate);
+  void choose_folder(const std::string& path);
   void draw_dialog(const app::Session& session, PanelContext& context);
 
   WorkspaceServices services_;
@@ -69,6 +71,7 @@ class Workspace {
   ExportState export_;
   StudyFormState study_form_;
   CompareState compare_;
+  TeachState teach_;
   FilesState files_;
   NoticesState notices_;
   GettingStartedState getting_started_;

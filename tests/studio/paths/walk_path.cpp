@@ -95,6 +95,16 @@ void copy_with_a_gap(const std::string& folder) {
   }
 }
 
+/// Three recordings of one motion.
+void write_recordings(const std::string& folder, const std::string& motion) {
+  fs::create_directories(folder);
+  for (int i = 0; i < 3; ++i) {
+    WalkOptions part;
+    part.motion = motion, part.first = 20 * i, part.last = 90 + 20 * i;
+    write_walk(folder + "/" + std::to_string(i) + ".npz", part);
+  }
+}
+
 class Path : public StudioWindow, public testing::WithParamInterface<std::string> {
  protected:
   using Play = void (Path::*)(const Words&);
@@ -349,6 +359,8 @@ class Path : public StudioWindow, public testing::WithParamInterface<std::string
       fs::create_directories(scratch.path("motions"));
       write_walk(scratch.path("motions/walk.npz")), write_walk(scratch.path("motions/run.npz"), {"walk", 48});
     }
+    if (word == "out/walks") write_recordings(scratch.path("walks"), "walk");
+    if (word == "out/dances") write_recordings(scratch.path("dances"), "dance");
     if (word == "out/pony.ply") write_pony(scratch.path("pony.ply"));
     if (word == "out/gaps") copy_with_a_gap(scratch.path("gaps"));
     if (starts_with(word, "samples/")) return std::string(US_SOURCE_DIR "/assets/") + word;
