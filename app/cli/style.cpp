@@ -108,12 +108,6 @@ int list_styles() {
   return 0;
 }
 
-double value_of(const Metrics& metrics, const char* key) {
-  for (const auto& [name, value] : metrics)
-    if (name == key) return value;
-  return std::nan("");
-}
-
 /// Null where either is not known.
 Json ratio(double after, double before) {
   return std::isfinite(after) && std::isfinite(before) && before != 0 ? Json(after / before) : Json();

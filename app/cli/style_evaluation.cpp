@@ -24,12 +24,6 @@ double share(bool yes) {
   return yes ? 100 : 0;
 }
 
-double value_of(const Metrics& metrics, const std::string& key) {
-  for (const auto& [name, value] : metrics)
-    if (name == key) return value;
-  return std::nan("");
-}
-
 void add_known(Metrics& figures, const std::string& key, double value) {
   if (std::isfinite(value)) figures.emplace_back(key, value);
 }

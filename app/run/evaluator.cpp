@@ -169,6 +169,12 @@ Metrics style_figures(const std::vector<Pose>& poses, const Joints& rest, double
   return figures;
 }
 
+double value_of(const Metrics& metrics, const std::string& key) {
+  for (const auto& [name, value] : metrics)
+    if (name == key) return value;
+  return std::nan("");
+}
+
 void MeanMetrics::add(const std::string& key, double value) {
   const auto known =
       std::find_if(sums_.begin(), sums_.end(), [&](const auto& sum) { return sum.first == key; });

@@ -121,6 +121,9 @@ class Evaluator {
 /// were seen.
 Metrics style_figures(const std::vector<Pose>& poses, const Joints& rest, double fps, bool has_legs = true);
 
+/// NaN where it is not there.
+double value_of(const Metrics& metrics, const std::string& key);
+
 /// Means of figures, in the order of their first appearance.
 class MeanMetrics {
  public:

@@ -15,6 +15,16 @@ Condition method_condition(const std::string& name, const std::string& engine, f
   return condition;
 }
 
+/// Performed in a style that comes with the program.
+Condition style_condition(const std::string& name, const std::string& style, float strength = 1,
+                          float liveliness = 1) {
+  Condition condition = method_condition(name, "copy");
+  condition.method.style.choose(style);
+  condition.method.style.strength = strength;
+  condition.method.style.liveliness = liveliness;
+  return condition;
+}
+
 StudyMotion motion_of(const std::string& name, const std::string& action, const std::string& source) {
   StudyMotion motion;
   motion.name = name;
@@ -97,13 +107,13 @@ Study dong(const std::string& samples) {
       "excluded. The paper's conditions are adult, child, its own method, Holden et al. 2016 and Aberman et "
       "al. "
       "2020: add recorded children and the results of others as conditions of the kind \"files\" in place of "
-      "the engines and strides here. Its motions are a jump and a fast walk; here they are the bundled dance "
+      "some of the styles here. Its motions are a jump and a fast walk; here they are the bundled dance "
       "and walk. Each clip is shown 5 times; with more takes of a motion, list them as motions of the same "
       "action and show each once.";
-  study.conditions = {method_condition("adult", "copy"), method_condition("short steps", "copy", 0.7f),
-                      method_condition("long steps", "copy", 1.3f),
-                      method_condition("paper's network", "paper"),
-                      method_condition("positions", "positions")};
+  study.conditions = {method_condition("adult", "copy"), style_condition("child", "child"),
+                      style_condition("child, half", "child", 0.5f),
+                      style_condition("child, posture and size alone", "child", 1, 0),
+                      style_condition("old", "old")};
   study.motions = {motion_of("walk", "Walking", samples + "/walk"),
                    motion_of("dance", "Dancing", samples + "/scan")};
   study.targets = {target_of("adult", samples + "/target_adult.glb")};

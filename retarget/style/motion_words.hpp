@@ -16,7 +16,8 @@ constexpr int kWordNumbers = 4 * kJointCount;      ///< of a frame: a quaternion
 /// [frames, kWordNumbers]. A word has kWordFrames of them.
 using WordRows = RowMatrix;
 
-/// A motion of any rate at kWordRate (the nearest frames), smoothed by a Gaussian of `smooth_frames` of those.
+/// A motion of any rate at kWordRate (the nearest frames), smoothed by a Gaussian of `smooth_frames` of
+/// those. Throws Error where it has no frame or no rate.
 std::vector<Rotations> at_word_rate(const std::vector<Rotations>& local, double fps, double smooth_frames);
 
 /// Local rotations as a row; the pelvis' without its heading.

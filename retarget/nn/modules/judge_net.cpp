@@ -7,14 +7,17 @@
 namespace understudy::nn {
 namespace {
 
+constexpr int64_t kStyleWidth = 64, kContentWidth = 128;  // there are more contents than styles
+
 torch::nn::Conv1d halving(int64_t in, int64_t out, int64_t size) {
   return torch::nn::Conv1d(torch::nn::Conv1dOptions(in, out, size).stride(2));
 }
 
-JudgePart part_of(const JudgeForm& form, const std::vector<std::string>& classes) {
+JudgePart part_of(const JudgeForm& form, const std::vector<std::string>& classes, int64_t width) {
   JudgePartOptions options;
   options.channels = static_cast<int64_t>(form.channels.size());
   options.classes = static_cast<int64_t>(classes.size());
+  options.width = width;
   return JudgePart(options);
 }
 
@@ -63,9 +66,9 @@ void JudgePartImpl::set_scale(const torch::Tensor& mean, const torch::Tensor& sp
 }
 
 JudgeNetImpl::JudgeNetImpl(const JudgeForm& form)
-    : look(register_module("look", part_of(form, form.styles))),
-      coordination(register_module("coordination", part_of(form, form.styles))),
-      content(register_module("content", part_of(form, form.contents))) {}
+    : look(register_module("look", part_of(form, form.styles, kStyleWidth))),
+      coordination(register_module("coordination", part_of(form, form.styles, kStyleWidth))),
+      content(register_module("content", part_of(form, form.contents, kContentWidth))) {}
 
 JudgedClip judged_clip(const RowMatrix& channels, const JudgeForm& form) {
   return {used_channels(channels, form), used_channels(mirrored_channels(channels, form.legs), form)};
