@@ -7,6 +7,7 @@
 #include "retarget/body/builtin_motion.hpp"
 #include "retarget/formats/motion_writers.hpp"
 #include "retarget/math/rotation.hpp"
+#include "retarget/pipeline/human_rest.hpp"
 #include "tests/session/studio_fixture.hpp"
 
 namespace understudy::app {

@@ -51,7 +51,7 @@ TEST_F(WorkspaceTest, EveryDialogDrawsAtAnySize) {
   for (const auto& [size, scale] : kSizes)
     for (const char* name : {"open", "open_source", "source_times", "open_target", "replace_target",
                              "open_document", "save_as", "export", "csv", "picture", "video", "compare",
-                             "settings", "about", "keys", "here", "study_web", "study_run"}) {
+                             "settings", "about", "keys", "here", "study_web", "study_run", "teach_style"}) {
       input.size = size, input.scale = scale;
       workspace.open_dialog(session, name);
       frame(3);
@@ -66,9 +66,9 @@ TEST_F(WorkspaceTest, EveryDialogDrawsAtAnySize) {
 TEST_F(WorkspaceTest, EveryDialogCanBeClosedInASmallWindow) {
   input.size = {400, 300};
   const std::pair<const char*, const char*> closers[] = {
-      {"settings", "settings.close"}, {"export", "export.cancel"}, {"picture", "export.cancel"},
-      {"compare", "compare.cancel"},  {"about", "about.close"},    {"keys", "keys.close"},
-      {"here", "help.close"},         {"open", "browser.cancel"}};
+      {"settings", "settings.close"},        {"export", "export.cancel"}, {"picture", "export.cancel"},
+      {"compare", "compare.cancel"},         {"about", "about.close"},    {"keys", "keys.close"},
+      {"teach_style", "teach_style.cancel"}, {"here", "help.close"},      {"open", "browser.cancel"}};
   for (const auto& [name, closer] : closers) {
     workspace.open_dialog(session, name);
     frame(3);
