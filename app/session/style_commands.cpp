@@ -152,8 +152,9 @@ void remove_tempo_mark(Call& c) {
 void add_style_commands(Commands& commands) {
   commands.add_edit({"method.style", "Style", "TAKE NAME|none, or a style's file"}, [](Call& c) {
     set_style(c.take().method.style, "style", ArgumentReader({c.word(1, "style")}));
-    c.label = c.take().method.style.called().empty() ? "No style"
-                                                     : "Style " + file_name(c.take().method.style.called());
+    const std::string& called = c.take().method.style.called();
+    const TaughtStyle* const taught = taught_style(c.session.styles, called);
+    c.label = called.empty() ? "No style" : "Style " + (taught ? taught->note.label : file_name(called));
   });
   for (const StyleShare& share : kShares)
     commands.add_slider({std::string("method.") + share.name, share.label, "TAKE SHARE: 0 to 1.5"},

@@ -49,7 +49,7 @@ std::string why_no_style_name(const std::string& name) {
            "' does not fit";
   for (const MannerFile& style : bundled_styles())
     if (lower_case(name) == lower_case(style.note.name) || lower_case(name) == lower_case(style.note.label))
-      return "the style '" + style.note.name + "' comes with the program, another needs another name";
+      return "'" + style.note.label + "' is the name of a style that comes with the program";
   return "";
 }
 

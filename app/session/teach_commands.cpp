@@ -98,7 +98,7 @@ void keep_taught(Studio& studio, const Teaching& teaching) {
   perform_anew(studio, teaching.file);
   const int take = studio.take_with_id(teaching.take);
   if (take >= 0) studio.run("method.style", {std::to_string(take), teaching.file});
-  studio.notify("The style " + teaching.lesson.note.label + " was " + teaching.fitted_to);
+  studio.notify("The style '" + teaching.lesson.note.label + "' was " + teaching.fitted_to);
 }
 
 bool is_teaching(const Call& c) {

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "retarget/base/error.hpp"
+#include "retarget/base/log.hpp"
 #include "retarget/math/rotation.hpp"
 #include "retarget/math/time_filter.hpp"
 
@@ -12,24 +13,39 @@ namespace {
 
 constexpr size_t kFewestFrames = 10;
 /// radians^2: what moves less than half a degree is not made to move by a gain.
-constexpr float kStill = 1e-4f;
+constexpr double kStill = 1e-4;
 constexpr Within<float> kGains{0.25f, 4};
+/// Of a movement that only the other manner has: a style's file holds up to 20, more would be noise.
+constexpr double kLargestGain = 19;
+/// A style's file holds up to 60.
+constexpr float kLargestTurn = 59 * kPi / 180;
 
 /// f of a symmetric matrix's eigenvalues.
 template <class F>
-Eigen::MatrixXf by_eigenvalues(const Eigen::MatrixXf& matrix, F&& f) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXf> solver(matrix);
-  const Eigen::VectorXf values = solver.eigenvalues().unaryExpr(f);
+Eigen::MatrixXd by_eigenvalues(const Eigen::MatrixXd& matrix, F&& f) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(matrix);
+  const Eigen::VectorXd values = solver.eigenvalues().unaryExpr(f);
   return solver.eigenvectors() * values.asDiagonal() * solver.eigenvectors().transpose();
 }
 
+/// In doubles: the product has the squares of what moves least, which floats lose beside what moves most.
 Eigen::MatrixXf transport(const Eigen::MatrixXf& from, const Eigen::MatrixXf& to) {
-  const auto root = [](float x) { return std::sqrt(std::max(x, 0.0f)); };
-  const auto inverse_root = [](float x) { return 1 / std::sqrt(std::max(x, kStill)); };
-  const auto still = kStill * Eigen::MatrixXf::Identity(from.rows(), from.cols());
-  const Eigen::MatrixXf a = from + still, half = by_eigenvalues(a, root),
-                        back = by_eigenvalues(a, inverse_root);
-  return back * by_eigenvalues(half * (to + still) * half, root) * back;
+  const auto root = [](double x) { return std::sqrt(std::max(x, 0.0)); };
+  const auto inverse_root = [](double x) { return 1 / std::sqrt(std::max(x, kStill)); };
+  const auto still = kStill * Eigen::MatrixXd::Identity(from.rows(), from.cols());
+  const Eigen::MatrixXd a = from.cast<double>() + still, b = to.cast<double>() + still,
+                        half = by_eigenvalues(a, root), back = by_eigenvalues(a, inverse_root);
+  const Eigen::MatrixXd map = back * by_eigenvalues(half * b * half, root) * back;
+  return by_eigenvalues(map, [](double x) { return std::min(x, kLargestGain); }).cast<float>();
+}
+
+/// How much otherwise a joint is held, as far as a file holds it.
+Vec3 limited(const Vec3& turn, int joint) {
+  if (turn.norm() <= kLargestTurn) return turn;
+  log::warn(detail::join(kJointNames[joint], ": is held ", std::lround(turn.norm() * 180 / kPi),
+                         " degrees otherwise, the style takes ", std::lround(kLargestTurn * 180 / kPi),
+                         " of them"));
+  return kLargestTurn * turn.normalized();
 }
 
 }  // namespace
@@ -93,9 +109,9 @@ Manner fit_manner(const MannerSample& from, const MannerSample& to, bool coupled
   coupling.offsets.fill(Vec3::Zero());
   for (size_t k = 0; k < joints.size(); ++k) {
     const auto at = static_cast<Eigen::Index>(3 * k);
-    coupling.offsets[joints[k]] = held.segment<3>(at);
+    coupling.offsets[joints[k]] = limited(held.segment<3>(at), joints[k]);
     const auto moves = [&](const Eigen::MatrixXf& of) {
-      return std::max(of.block<3, 3>(at, at).trace(), kStill);
+      return std::max(of.block<3, 3>(at, at).trace(), static_cast<float>(kStill));
     };
     coupling.gains.diagonal().segment<3>(at).setConstant(
         std::clamp(std::sqrt(moves(b) / moves(a)), kGains.low, kGains.high));

@@ -104,7 +104,7 @@ TEST_F(TeachingTest, AStyleIsKeptListedAndPerformedAndUndone) {
   EXPECT_GT(wrists_apart(), apart + 0.15);
   ASSERT_FALSE(studio->session().notices.empty());
   EXPECT_EQ(studio->session().notices.back().text,
-            "The style wide arms was fitted to 3 recordings of wide and 3 of plain");
+            "The style 'wide arms' was fitted to 3 recordings of wide and 3 of plain");
   studio->run("edit.undo");
   studio->wait_idle();
   EXPECT_TRUE(style().called().empty());
@@ -181,7 +181,9 @@ TEST_F(TeachingTest, NamesAndSettingsThatAreNoneAreRefused) {
     EXPECT_NE(refused({plain, wide, name}).find("does not fit"), std::string::npos) << name;
   EXPECT_EQ(refused({plain, wide, ""}), "a style needs a name");
   EXPECT_NE(refused({plain, wide, std::string(61, 'x')}).find("at most 60"), std::string::npos);
-  EXPECT_NE(refused({plain, wide, "Child"}).find("'child' comes with the program"), std::string::npos);
+  EXPECT_NE(
+      refused({plain, wide, "Child"}).find("'Child' is the name of a style that comes with the program"),
+      std::string::npos);
   EXPECT_NE(refused({plain, wide, "x", "joints=ears"}).find("joints is one of"), std::string::npos);
   EXPECT_NE(refused({plain, wide, "x", "speed=2"}).find("not speed"), std::string::npos);
   EXPECT_NE(refused({plain, wide, "x", "all"}).find("is written as"), std::string::npos);

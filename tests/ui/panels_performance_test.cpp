@@ -78,6 +78,8 @@ TEST_F(TeachDialog, ANameThatIsNoneOrTakenIsToldAtOnce) {
   frame(2);
   EXPECT_FALSE(shown("teach_style.problem"));
   EXPECT_FALSE(mark("teach_style.apply").enabled) << "there is one of that name";
+  click("teach_style.forget");
+  EXPECT_EQ(take_log(), Lines{"style.forget mine"});
   click("teach_style.replace");
   frame(2);
   click("teach_style.apply");

@@ -52,8 +52,20 @@ std::string missing_yet(const TeachState& state, bool exists) {
   return state.problem;
 }
 
+/// There is a style of that name already.
+void draw_taken(PanelContext& context, TeachState& state) {
+  Ui& ui = context.ui;
+  toggle_row(ui, {"teach_style.replace", "Replace", "The style of that name is taught anew"}, state.replace);
+  row(ui, "");
+  ButtonOptions forget;
+  forget.look = ButtonLook::Danger, forget.width = -1;
+  forget.tooltip = "Removes the style of that name from this machine for good";
+  if (button(ui, "teach_style.forget", "Forget it", forget)) context.ask("style.forget", {state.name});
+}
+
 /// What is wrong with the name, or that it is taken. Whether it is.
-bool draw_name_check(const app::Session& session, Ui& ui, TeachState& state) {
+bool draw_name_check(const app::Session& session, PanelContext& context, TeachState& state) {
+  Ui& ui = context.ui;
   if (state.checked != state.name) {
     state.checked = state.name, state.replace = false;
     state.problem = state.name.empty() ? "" : app::why_no_style_name(state.name);
@@ -65,9 +77,7 @@ bool draw_name_check(const app::Session& session, Ui& ui, TeachState& state) {
   const auto& taught = session.styles.taught;
   const bool exists = std::any_of(taught.begin(), taught.end(),
                                   [&](const auto& style) { return style.note.name == state.name; });
-  if (exists)
-    toggle_row(ui, {"teach_style.replace", "Replace", "The style of that name is taught anew"},
-               state.replace);
+  if (exists) draw_taken(context, state);
   return exists;
 }
 
@@ -109,7 +119,7 @@ bool draw_teach_style(const app::Session& session, PanelContext& context, TeachS
        "differ. It takes seconds, with scans minutes.");
   draw_folder_rows(session, ui, state, files);
   draw_choices(ui, state);
-  const std::string missing = missing_yet(state, draw_name_check(session, ui, state));
+  const std::string missing = missing_yet(state, draw_name_check(session, context, state));
   draw_words(session, ui);
   ImGui::Dummy({0, ui.px(4)});
   ButtonRow buttons(2);

@@ -1,6 +1,6 @@
 // The dialog that teaches a style: from recordings of how somebody moves now, and of how they shall move.
-// Marks: teach_style.from, .to (.browse), .name, .licence, .joints (.K), .replace, .problem, .consent,
-// .apply, .cancel.
+// Marks: teach_style.from, .to (.browse), .name, .licence, .joints (.K), .replace, .forget, .problem,
+// .consent, .apply, .cancel.
 #pragma once
 
 #include <string>
