@@ -24,7 +24,7 @@ struct Teaching {
 };
 
 std::string kept_folder(const Call& c) {
-  const std::string folder = styles_folder(c.studio.services().settings_file);
+  std::string folder = styles_folder(c.studio.services().settings_file);
   US_CHECK(!folder.empty(), "taught styles are kept beside the settings, and no settings are kept here");
   return folder;
 }
@@ -49,7 +49,7 @@ void set_lesson(Teaching& teaching, const std::string& setting) {
 }
 
 std::shared_ptr<Teaching> asked_teaching(const Call& c) {
-  const auto teaching = std::make_shared<Teaching>();
+  auto teaching = std::make_shared<Teaching>();
   StyleLesson& lesson = teaching->lesson;
   lesson.from = c.path(0, "folder of how they move now");
   lesson.to = c.path(1, "folder of how they shall move");

@@ -72,6 +72,7 @@ void MannerSample::add(const std::vector<StyleFrame>& clip) {
       std::min(1.0f, static_cast<float>(smooth_s_ / static_cast<double>(kSmoothestSeconds))), fps);
   for (const int j : joints_) {
     std::vector<Mat3> one;
+    one.reserve(clip.size());
     for (const StyleFrame& frame : clip) one.push_back(frame.pose.local[j]);
     one = filtered_rotations(one, half);
     for (size_t t = 0; t < one.size(); ++t) smooth[t].pose.local[j] = one[t];

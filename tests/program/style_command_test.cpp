@@ -101,6 +101,29 @@ TEST_F(Styling, AStylesLicenceGoesIntoTheFile) {
   EXPECT_NE(bytes.find("CC BY-NC 4.0 (non-commercial), (c) Somebody"), std::string::npos);
 }
 
+TEST_F(Styling, OneIsTaughtFromTwoFoldersAndPerformedIn) {
+  for (const char* const motion : {"walk", "dance"}) {
+    std::filesystem::create_directories(scratch.path(motion));
+    for (int i = 0; i < 2; ++i) {
+      WalkOptions part;
+      part.motion = motion, part.first = 20 * i, part.last = 90 + 20 * i;
+      write_walk(scratch.path(motion) + "/" + std::to_string(i) + ".npz", part);
+    }
+  }
+  const auto teach = [&](const std::string& to, const std::string& file) {
+    return run_program({"train", "style", "--data", scratch.path(""), "--from", "walk", "--to", to,
+                        "--licence", "MIT", "--out", file});
+  };
+  const Finished done = teach("dance", out("dance.json"));
+  ASSERT_EQ(done.code, 0) << done.err;
+  EXPECT_NE(done.out.find("fitted to 2 recordings of dance and 2 of walk"), std::string::npos) << done.out;
+  EXPECT_EQ(Json::parse(read_bytes(out("dance.json")))["made_from"], "recordings of dance and walk");
+  const Finished styled = style({walk(), "--to", out("dance.json"), "--out", out("styled.bvh")});
+  EXPECT_EQ(styled.code, 0) << styled.err;
+  expect_refused(teach("walk", out("same.json")), "is the other manner again", out("same.json"));
+  expect_refused(teach("run", out("none.json")), "no such folder of recordings", out("none.json"));
+}
+
 TEST_F(Styling, BadInputIsRefusedInASentence) {
   const std::string file = out("x.bvh");
   expect_refused(style({walk(), "--to", "chld", "--out", file}), "there is no style 'chld'", file);

@@ -78,6 +78,19 @@ TEST(JobQueue, SurvivesWhateverIsThrown) {
     EXPECT_TRUE(problem == "One: index" || problem == "Two: failed for an unknown reason") << problem;
 }
 
+TEST(JobQueue, TellsWhatIsDoneNow) {
+  JobQueue jobs;
+  std::atomic<bool> seen{false};
+  jobs.start("Teaching", [&](JobControl& control) {
+    control.tell("recording 12 of 80");
+    while (!seen) std::this_thread::sleep_for(1ms);
+  });
+  const JobView view = view_when(jobs, [](const JobView& one) { return !one.doing.empty(); });
+  seen = true;
+  EXPECT_EQ(view.doing, "recording 12 of 80");
+  EXPECT_TRUE(finish(jobs).empty());
+}
+
 TEST(JobQueue, ACancelledJobEndsSilently) {
   JobQueue jobs;
   bool taken = false;

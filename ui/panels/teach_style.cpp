@@ -116,7 +116,7 @@ bool draw_teach_style(const app::Session& session, PanelContext& context, TeachS
   if (!begin_dialog(ui, "teach_style", "Teach a style", 480)) return true;
   hint(ui,
        "Fits a style to recordings of two manners of moving, some of each: what is done, and by whom, may "
-       "differ. It takes seconds, with scans minutes.");
+       "differ. It takes seconds, with many scans minutes.");
   draw_folder_rows(session, ui, state, files);
   draw_choices(ui, state);
   const std::string missing = missing_yet(state, draw_name_check(session, context, state));
