@@ -75,6 +75,7 @@ double median_of(std::vector<double> values) {
 /// {"mean", "low", "high"}: subjects are drawn with replacement.
 Json interval(const std::map<std::string, std::vector<double>>& by_subject) {
   std::vector<const std::vector<double>*> subjects;
+  subjects.reserve(by_subject.size());
   for (const auto& [name, values] : by_subject) subjects.push_back(&values);
   const auto mean_of = [](const std::vector<const std::vector<double>*>& chosen) {
     double sum = 0, count = 0;

@@ -32,7 +32,7 @@ struct Case {
   std::string truth;               ///< path; empty: none
   std::vector<std::string> alone;  ///< paths: each person of a scene, scanned alone by the same sensors
   std::vector<std::string> tags;
-  std::optional<GapPlan> gaps = {};  ///< frames are to be made: these alone are evaluated
+  std::optional<GapPlan> gaps = {};     ///< frames are to be made: these alone are evaluated
   std::optional<StyleCase> style = {};  ///< how it is performed is evaluated, on its own bones
   /// Of two bodies of a kind, the second of which shall perform what the first did (`target` are its scans
   /// then): paths of its own truth, and of what it does under the first one's true angles; empty: none.

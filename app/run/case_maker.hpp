@@ -13,7 +13,7 @@ struct SuiteOptions {
   std::string out;   ///< folder; a case a folder is made in it
   std::string suite = "naked";  ///< see make_suite
   std::string split = "dev";
-  std::string body;  ///< SMPL-format; empty: the data folder's own
+  std::string body;      ///< SMPL-format; empty: the data folder's own
   std::string from, to;  ///< of style: folders in `data`, the manner that is left and the one that is taken
   int frames =
       90;  ///< of a case; extraction and occluded have 12, of hands, scenes, partial and sensors fewer
