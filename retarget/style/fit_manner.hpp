@@ -37,9 +37,9 @@ class MannerSample {
   Eigen::MatrixXf products_;
 };
 
-/// The manner that makes the movements of `from` those of `to`: postures differ as the means do, and movements
-/// go through the linear map that takes their covariance to the other's and changes them least: the optimal
-/// transport between two Gaussians, A^-1/2 (A^1/2 B A^1/2)^1/2 A^-1/2 (Knott and Smith
+/// The manner that makes the movements of `from` those of `to`: postures differ as the means do, and
+/// movements go through the linear map that takes their covariance to the other's and changes them least: the
+/// optimal transport between two Gaussians, A^-1/2 (A^1/2 B A^1/2)^1/2 A^-1/2 (Knott and Smith
 /// 1984). Correlations between joints become those of `to`, which gains of single joints cannot do.
 /// Both only as far as a style's file holds them; what is cut of a posture is logged.
 /// coupled false: a gain of each joint by itself. Both samples have the same joints. Throws Error where a
