@@ -27,6 +27,17 @@ class Styling : public ShippedProgram {
     arguments.insert(arguments.end(), more.begin(), more.end());
     return run_program(arguments);
   }
+  /// Two manners of moving, two clips each, in the folders `walk` and `dance`.
+  void write_manners() const {
+    for (const char* const motion : {"walk", "dance"}) {
+      std::filesystem::create_directories(scratch.path(motion));
+      for (int i = 0; i < 2; ++i) {
+        WalkOptions part;
+        part.motion = motion, part.first = 20 * i, part.last = 90 + 20 * i;
+        write_walk(scratch.path(motion) + "/" + std::to_string(i) + ".npz", part);
+      }
+    }
+  }
   /// Frames of a GLB's only animation.
   int64_t frames_of(const std::string& file) const {
     const Character character = read_character(file);
@@ -102,14 +113,7 @@ TEST_F(Styling, AStylesLicenceGoesIntoTheFile) {
 }
 
 TEST_F(Styling, OneIsTaughtFromTwoFoldersAndPerformedIn) {
-  for (const char* const motion : {"walk", "dance"}) {
-    std::filesystem::create_directories(scratch.path(motion));
-    for (int i = 0; i < 2; ++i) {
-      WalkOptions part;
-      part.motion = motion, part.first = 20 * i, part.last = 90 + 20 * i;
-      write_walk(scratch.path(motion) + "/" + std::to_string(i) + ".npz", part);
-    }
-  }
+  write_manners();
   const auto teach = [&](const std::string& to, const std::string& file) {
     return run_program({"train", "style", "--data", scratch.path(""), "--from", "walk", "--to", to,
                         "--licence", "MIT", "--out", file});
@@ -122,6 +126,46 @@ TEST_F(Styling, OneIsTaughtFromTwoFoldersAndPerformedIn) {
   EXPECT_EQ(styled.code, 0) << styled.err;
   expect_refused(teach("walk", out("same.json")), "is the other manner again", out("same.json"));
   expect_refused(teach("run", out("none.json")), "no such folder of recordings", out("none.json"));
+}
+
+TEST_F(Styling, AStyleIsJudgedOnCasesOfTheSuite) {
+  write_manners();
+  const std::string data = scratch.path(""), cases = scratch.path("cases"), judge = out("judge.weights");
+  ASSERT_EQ(run_program({"train", "style", "--data", data, "--from", "walk", "--to", "dance", "--licence",
+                         "MIT", "--out", out("dance.json")})
+                .code,
+            0);
+  std::filesystem::create_directories(scratch.path("manners"));
+  for (const char* const motion : {"walk", "dance"})
+    std::filesystem::copy(scratch.path(motion), scratch.path("manners") + "/" + motion);
+  const Finished trained = run_program({"train", "style-judge", "--data", scratch.path("manners"),
+                                        "--licence", "MIT", "--samples", "3200", "--out", judge});
+  ASSERT_EQ(trained.code, 0) << trained.err;
+  const Finished made =
+      run_program({"cases", data, "--suite", "style", "--from", "walk", "--to", "dance", "--out", cases});
+  ASSERT_EQ(made.code, 0) << made.err;
+  EXPECT_NE(made.out.find("4 cases"), std::string::npos) << made.out;
+  const auto figures = [&](std::vector<std::string> more) {
+    std::vector<std::string> arguments = {"eval", cases, "--judge", judge, "--out", out("r.json")};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const Finished done = run_program(arguments);
+    EXPECT_EQ(done.code, 0) << done.err << done.out;
+    return Json::parse(read_bytes(out("r.json")))["style_figures"]["figures"];
+  };
+  const Json plain = figures({});
+  EXPECT_EQ(plain["real_style_share"]["mean"], 100) << plain.dump();
+  EXPECT_EQ(plain["style_share"]["mean"], 0) << plain.dump();
+  EXPECT_EQ(plain["jerk_ratio"]["mean"], 1);
+  EXPECT_LT(plain["dtw_deg"]["mean"], 0.1);
+  const Json styled = figures({"--style", out("dance.json"), "--style-back", out("dance.json")});
+  EXPECT_EQ(styled["style_share"]["mean"], 100) << styled.dump();
+  EXPECT_GT(styled["dtw_deg"]["mean"], 3);
+  EXPECT_TRUE(styled.contains("cycle_share"));
+  const Json adain = figures({"--baseline", "adain", "--data", data});
+  EXPECT_EQ(adain["style_share"]["mean"], 100) << adain.dump();
+  EXPECT_NE(run_program({"eval", cases, "--baseline", "adain"}).code, 0) << "--data is missing";
+  EXPECT_NE(run_program({"eval", cases, "--judge", walk()}).code, 0) << "a clip is no judge";
+  EXPECT_NE(run_program({"cases", data, "--suite", "style", "--from", "walk", "--out", cases}).code, 0);
 }
 
 TEST_F(Styling, BadInputIsRefusedInASentence) {
