@@ -29,9 +29,9 @@ class StyleEvaluation {
   explicit StyleEvaluation(const EvalOptions& options);
   ~StyleEvaluation();
   void evaluate(const Case& c, CaseResult& result);
-  /// {"figures": {KEY: {"mean", "low", "high"}}, the 95 % interval by subject (by case where nobody is named);
-  /// "medians": {KEY: {"source", "styled", "real", "real_low", "real_high"}} over subjects' medians}; null
-  /// before the first case.
+  /// {"figures": {KEY: {"mean", "low", "high"}}, the 95 % interval by subject (by case where nobody is
+  /// named); "medians": {KEY: {"source", "styled", "real", "real_low", "real_high"}} over subjects'
+  /// medians}; null before the first case.
   Json summary() const;
 
  private:

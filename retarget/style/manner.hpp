@@ -67,8 +67,8 @@ class Follower {
 };
 
 /// Each joint's rotation is split into its slow posture and the movement about it; the posture is turned, the
-/// movement scaled, or coupled with those of other joints. What sways follows hands and feet, so who stands still does not sway. A body that lies is
-/// left as it is.
+/// movement scaled, or coupled with those of other joints. What sways follows hands and feet, so who stands
+/// still does not sway. A body that lies is left as it is.
 class MannerStyle final : public PoseStyle {
  public:
   /// The shares are those of StyleChoice.

@@ -11,8 +11,8 @@
 
 namespace understudy {
 
-/// StyleFrames styled by the engine; between source and styled along the shortest arc by the strength; and the path that
-/// leads to.
+/// StyleFrames styled by the engine; between source and styled along the shortest arc by the strength; and
+/// the path that leads to.
 class SkeletonStyle final : public MotionStyle {
  public:
   SkeletonStyle(std::unique_ptr<PoseStyle> engine, float strength);
