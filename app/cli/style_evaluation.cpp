@@ -65,13 +65,6 @@ std::vector<Rotations> residual_of(const StyledClip& clip) {
   return residual;
 }
 
-double median_of(std::vector<double> values) {
-  if (values.empty()) return std::nan("");
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 /// {"mean", "low", "high"}: subjects are drawn with replacement.
 Json interval(const std::map<std::string, std::vector<double>>& by_subject) {
   std::vector<const std::vector<double>*> subjects;

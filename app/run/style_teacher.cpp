@@ -25,12 +25,6 @@ struct Taught {
   std::vector<double> rises_s;  // of the recordings in which a hand acts
 };
 
-double median_of(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 void learn(const std::string& recording, const Networks& networks, const ClipStep& step, Taught& taught) {
   SourceOptions source;
   source.path = recording;

@@ -1,8 +1,9 @@
 #include "app/run/styled_clip.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <optional>
 
-#include "app/run/evaluator.hpp"
 #include "app/run/retargeted_source.hpp"
 #include "retarget/base/error.hpp"
 #include "retarget/base/text.hpp"
@@ -87,6 +88,13 @@ Metrics figures_of(const StyledClip& clip) {
   for (const Pose& pose : clip.poses) joints.push_back(forward_kinematics(clip.rest, pose).joints);
   figures.emplace_back("jerk", jerk(joints, clip.fps));
   return figures;
+}
+
+double median_of(std::vector<double> values) {
+  if (values.empty()) return std::nan("");
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
 }
 
 std::vector<StyleFrame> style_frames(const StyledClip& clip) {

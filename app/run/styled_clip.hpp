@@ -4,9 +4,9 @@
 #include <functional>
 #include <vector>
 
+#include "app/run/evaluator.hpp"
 #include "app/run/source.hpp"
 #include "app/run/tempo_choice.hpp"
-#include "retarget/metrics/joint_metrics.hpp"
 #include "retarget/pipeline/performer.hpp"
 #include "retarget/style/pose_style.hpp"
 
@@ -36,6 +36,9 @@ void give_tempo(TempoChoice choice, double legs_m, StyledClip& clip);
 
 /// style_figures(), with jerk.
 Metrics figures_of(const StyledClip& clip);
+
+/// The upper one of the two in the middle; NaN where there is none.
+double median_of(std::vector<double> values);
 
 /// As an engine of styles is given it.
 std::vector<StyleFrame> style_frames(const StyledClip& clip);
