@@ -18,7 +18,7 @@ namespace {
 
 constexpr double kNoiseSeconds = 0.05;  // the Gaussian whose residual is called noise
 constexpr int kResamples = 1000;
-constexpr const char* kMedians[] = {"body_sway_deg", "head_turn", "pelvis_speed", "rise_s"};
+constexpr const char* kMedians[] = {"body_sway_deg", "head_turn", "pelvis_speed", "rise_s", "jerk"};
 
 double share(bool yes) {
   return yes ? 100 : 0;

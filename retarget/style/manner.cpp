@@ -18,6 +18,7 @@ constexpr float kMostLean = 0.35f, kMostLook = 0.6f, kMostShift = 0.3f;  // radi
 constexpr float kMostBounce = 0.08f;                                     // legs
 constexpr float kLookHertz = 1.2f;
 constexpr float kHandSpeed_s = 0.3f;
+constexpr float kFollows_s = 0.04f;
 constexpr float kReach = 0.985f;     // of the leg, as far as it reaches before it straightens softly
 constexpr float kMostLifted = 0.3f;  // legs: no step lifts a foot more
 constexpr float kMostCrouch = 0.3f;  // legs
@@ -68,6 +69,7 @@ void MannerStyle::reset() {
   started_ = false;
   next_.reset();
   hand_speed_ = {};
+  added_.fill(Vec3::Zero());
 }
 
 void MannerStyle::push(const StyleFrame& frame) {
@@ -94,6 +96,17 @@ JointTurns MannerStyle::wanted() const {
   }
   for (int j = 0; j < kJointCount; ++j)
     if (j != kMirror[j]) made[j] *= 1 + liveliness_ * manner_.uneven * (j < kMirror[j] ? 1.0f : -1.0f);
+  return made;
+}
+
+/// What the manner adds to movements follows within kFollows_s: it makes no more of a source's jitter.
+JointTurns MannerStyle::followed(const JointTurns& wanted, float dt) {
+  const float share = started_ ? 1 - std::exp(-dt / kFollows_s) : 1;
+  JointTurns made;
+  for (int j = 0; j < kJointCount; ++j) {
+    added_[j] += share * (wanted[j] - movement_.movements()[j] - added_[j]);
+    made[j] = movement_.movements()[j] + added_[j];
+  }
   return made;
 }
 
@@ -126,7 +139,7 @@ Rotations MannerStyle::styled(const StyleFrame& frame) {
   movement_.push(frame);
   slow_height_share_ = slow_height_.share(frame.dt);
   const float amount = uprightness(frame.pose.local[Pelvis]);
-  const JointTurns wanted_turns = wanted();
+  const JointTurns wanted_turns = followed(wanted(), frame.dt);
   Rotations pose = frame.pose.local;
   for (int j = 0; j < kJointCount; ++j)
     if (!is_of_leg(j) || turns_legs()) pose[j] = joint(j, wanted_turns[j], frame.pose.local[j], amount);

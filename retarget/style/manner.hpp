@@ -80,6 +80,7 @@ class MannerStyle final : public PoseStyle {
  private:
   Rotations styled(const StyleFrame& frame);
   JointTurns wanted() const;
+  JointTurns followed(const JointTurns& wanted, float dt);
   Vec3 offset(int j) const;
   Mat3 joint(int j, const Vec3& wanted, const Mat3& local, float amount) const;
   bool turns_legs() const { return manner_.coupling && manner_.coupling->turns(LeftHip); }
@@ -90,6 +91,7 @@ class MannerStyle final : public PoseStyle {
   Manner manner_;
   float posture_, size_, liveliness_;
   JointMovement movement_;
+  JointTurns added_{};  // to the movements
   SlowMean slow_height_{0.5f};
   float slow_height_share_ = 1;
   std::array<Vec3, 4> ends_{};  // slow places of hands and feet beside the pelvis, in its heading, legs

@@ -27,6 +27,7 @@ void SkeletonStyle::reset() {
   frames_.reset();
   waiting_.clear();
   root_.reset();
+  feet_.reset();
 }
 
 void SkeletonStyle::push(const Extraction& seen, float dt) {
@@ -43,6 +44,7 @@ std::optional<Extraction> SkeletonStyle::pop() {
   Pose pose;
   pose.local = by_strength(next.frame.pose.local, *styled, strength_);
   pose.root = root_.push(next.frame, pose.local);
+  feet_.push(next.frame, root_.bears(), pose);
   Extraction result = exact_extraction(forward_kinematics(next.frame.rest, pose));
   result.confidence = next.seen.confidence;
   result.visibility = next.seen.visibility;

@@ -6,6 +6,7 @@
 
 #include "retarget/pipeline/motion_style.hpp"
 #include "retarget/style/pose_style.hpp"
+#include "retarget/style/standing_feet.hpp"
 #include "retarget/style/style_frames.hpp"
 #include "retarget/style/styled_root.hpp"
 
@@ -33,6 +34,7 @@ class SkeletonStyle final : public MotionStyle {
   StyleFrames frames_;
   std::deque<Waiting> waiting_;
   StyledRoot root_;
+  StandingFeet feet_;
 };
 
 /// From `source` towards `styled` by this much, each along its shortest arc: 0 the source, 1 the styled,

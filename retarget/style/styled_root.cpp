@@ -15,16 +15,16 @@ constexpr float kPath_s = 4;  // over which styled and source's path are compare
 }  // namespace
 
 /// How much each point of the feet bears the body: 1 on the floor, less and less above it.
-std::array<float, 4> StyledRoot::bearing(const Feet& feet, float leg, float dt) {
-  for (size_t k = 0; k < kPoints.size(); ++k) levels_[k].push(feet.source[k], leg, dt);
+FootPoints<float> StyledRoot::bearing(const Feet& feet, float leg, float dt) {
+  for (size_t k = 0; k < kFootPoints.size(); ++k) levels_[k].push(feet.source[k], leg, dt);
   // In the first frame a raised foot has no level of its own yet: both stand on one floor.
   if (!started_)
     for (const size_t k : {0, 2}) {
       levels_[k].lower_to(levels_[k + 1].height());
       levels_[k + 1].lower_to(levels_[k].height());
     }
-  std::array<float, 4> bears{};
-  for (size_t k = 0; k < kPoints.size(); ++k) {
+  FootPoints<float> bears{};
+  for (size_t k = 0; k < kFootPoints.size(); ++k) {
     const float above = (feet.source[k].y() - levels_[k].height()) / (kBearing * leg);
     bears[k] = std::exp(-0.5f * above * above);
   }
@@ -32,11 +32,11 @@ std::array<float, 4> StyledRoot::bearing(const Feet& feet, float leg, float dt) 
 }
 
 /// The way of the styled pelvis since the last frame, over the floor.
-Vec3 StyledRoot::step(const StyleFrame& source, const Feet& feet, const std::array<float, 4>& bears) {
+Vec3 StyledRoot::step(const StyleFrame& source, const Feet& feet, const FootPoints<float>& bears) {
   const Vec3 by_source = source.pose.root - last_root_;
   Vec3 by_feet = Vec3::Zero();
   float all = 0;
-  for (size_t k = 0; k < kPoints.size(); ++k) {
+  for (size_t k = 0; k < kFootPoints.size(); ++k) {
     const float weight = std::min(bears[k], bore_[k]);
     by_feet += weight * ((feet.source[k] - last_.source[k]) - (feet.styled[k] - last_.styled[k]));
     all += weight;
@@ -54,19 +54,15 @@ Vec3 StyledRoot::push(const StyleFrame& source, const Rotations& styled) {
   const float leg = leg_length(source.rest);
   const PosedSkeleton was = forward_kinematics(source.rest, source.pose),
                       is = forward_kinematics(source.rest, {styled, Vec3::Zero()});
-  Feet feet;
-  for (size_t k = 0; k < kPoints.size(); ++k) {
-    feet.source[k] = was.joints.row(kPoints[k]).transpose();
-    feet.styled[k] = is.joints.row(kPoints[k]).transpose();
-  }
-  const std::array<float, 4> bears = bearing(feet, leg, source.dt);
+  const Feet feet{foot_points(was.joints), foot_points(is.joints)};
+  const FootPoints<float> bears = bearing(feet, leg, source.dt);
   root_ = started_ ? Vec3(root_ + step(source, feet, bears)) : source.pose.root;
 
   // The lower points are as high as the source's; the lowest counts most.
   const float lowest =
       std::min({feet.source[0].y(), feet.source[1].y(), feet.source[2].y(), feet.source[3].y()});
   float over = 0, all = 0, most = 0;
-  for (size_t k = 0; k < kPoints.size(); ++k) {
+  for (size_t k = 0; k < kFootPoints.size(); ++k) {
     const float weight = std::exp((lowest - feet.source[k].y()) / (kLower * leg));
     over += weight * (feet.source[k].y() - source.pose.root.y() - feet.styled[k].y());
     all += weight;

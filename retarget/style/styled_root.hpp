@@ -1,10 +1,8 @@
 // Where a styled source goes: its feet stand where the source's stand, and its flights keep their shape.
 #pragma once
 
-#include <array>
-
-#include "retarget/skeleton/skeleton.hpp"
 #include "retarget/style/foot_level.hpp"
+#include "retarget/style/foot_points.hpp"
 #include "retarget/style/pose_style.hpp"
 
 namespace understudy {
@@ -18,18 +16,18 @@ class StyledRoot {
   void reset() { *this = StyledRoot(); }
   /// Where the pelvis of the styled pose is. styled: its local rotations.
   Vec3 push(const StyleFrame& source, const Rotations& styled);
+  /// How much each point of the feet bears in the newest frame: 1 on the floor .. 0.
+  const FootPoints<float>& bears() const { return bore_; }
 
  private:
-  /// Ball and ankle of both feet.
-  static constexpr std::array<int, 4> kPoints = {LeftFoot, RightFoot, LeftAnkle, RightAnkle};
   struct Feet {
-    std::array<Vec3, 4> source, styled;  // world; relative to the styled pelvis
+    FootPoints<Vec3> source, styled;  // world; relative to the styled pelvis
   };
-  std::array<float, 4> bearing(const Feet& feet, float leg, float dt);
-  Vec3 step(const StyleFrame& source, const Feet& feet, const std::array<float, 4>& bears);
+  FootPoints<float> bearing(const Feet& feet, float leg, float dt);
+  Vec3 step(const StyleFrame& source, const Feet& feet, const FootPoints<float>& bears);
 
-  std::array<FootLevel, 4> levels_;
-  std::array<float, 4> bore_{};  // as of bearing(), in the last frame
+  FootPoints<FootLevel> levels_;
+  FootPoints<float> bore_{};  // as of bearing(), in the last frame
   Feet last_;
   Vec3 last_root_ = Vec3::Zero(), root_ = Vec3::Zero();  // of the source; of the result
   float offset_ = 0;                                     // of the result's height over the source's
