@@ -106,8 +106,9 @@ Manner fit_manner(const MannerSample& from, const MannerSample& to, bool coupled
   const Eigen::MatrixXf a = from.covariance(), b = to.covariance();
   const Eigen::VectorXf held = to.posture() - from.posture();
   Manner manner;
-  Coupling coupling{joints, Eigen::MatrixXf::Zero(a.rows(), a.cols()), {}};
-  coupling.offsets.fill(Vec3::Zero());
+  Coupling coupling;
+  coupling.joints = joints;
+  coupling.gains = Eigen::MatrixXf::Zero(a.rows(), a.cols());
   for (size_t k = 0; k < joints.size(); ++k) {
     const auto at = static_cast<Eigen::Index>(3 * k);
     coupling.offsets[joints[k]] = limited(held.segment<3>(at), joints[k]);

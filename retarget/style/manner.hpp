@@ -25,7 +25,8 @@ struct Coupling {
   std::vector<int> joints;
   /// [3 joints, 3 joints]: their movements (JointMovement), one below the other, become these times them
   Eigen::MatrixXf gains;
-  JointTurns offsets{};  ///< added to their rotation vectors, radians
+  JointTurns offsets;  ///< added to their rotation vectors, radians
+  Coupling() { offsets.fill(Vec3::Zero()); }
   bool turns(int joint) const { return std::find(joints.begin(), joints.end(), joint) != joints.end(); }
 };
 
@@ -91,7 +92,7 @@ class MannerStyle final : public PoseStyle {
   Manner manner_;
   float posture_, size_, liveliness_;
   JointMovement movement_;
-  JointTurns added_{};  // to the movements
+  JointTurns added_;  // to the movements
   SlowMean slow_height_{0.5f};
   float slow_height_share_ = 1;
   std::array<Vec3, 4> ends_{};  // slow places of hands and feet beside the pelvis, in its heading, legs

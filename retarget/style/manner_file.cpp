@@ -117,7 +117,6 @@ Coupling read_coupling(const Json& value, const std::string& where) {
                value["gains"].is_array() && value["offsets"].is_array(),
            where, " is not joints, offsets and gains");
   Coupling coupling;
-  coupling.offsets.fill(Vec3::Zero());
   for (const Json& name : value["joints"]) {
     US_CHECK(name.is_string(), where, ": a joint is not a name");
     const int j = joint_named(name.get<std::string>());

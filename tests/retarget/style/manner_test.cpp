@@ -119,6 +119,35 @@ TEST(MannerStyle, StandingFeetStand) {
   }
 }
 
+/// Legs that are turned by the style, the left unlike the right, arms untouched.
+std::unique_ptr<SkeletonStyle> turned_legs() {
+  Coupling coupling;
+  coupling.joints = {LeftHip, RightHip, LeftKnee, RightKnee};
+  coupling.gains = 1.4f * Eigen::MatrixXf::Identity(12, 12);
+  for (int k = 0; k < 3; ++k) coupling.gains(k, k) = 0.8f;
+  coupling.offsets[RightHip] = Vec3(-0.1f, 0, 0.05f);
+  Manner manner;
+  manner.coupling = coupling;
+  return std::make_unique<SkeletonStyle>(std::make_unique<MannerStyle>(manner, 1.0f, 1.0f, 1.0f), 1.0f);
+}
+
+TEST(MannerStyle, FeetStandOnLegsThatTheStyleTurns) {
+  for (const char* const name : {"walk", "dance"}) {
+    const auto source = motion(name);
+    const double before = stance_slide(joints_of(source), 30);
+    const auto style = turned_legs();
+    const auto out = joints_of(styled(*style, source));
+    EXPECT_LT(stance_slide(out, 30), std::max(1.2 * before, 0.02)) << name << ", source " << before;
+    double changed = 0;
+    for (size_t t = 0; t < out.size(); ++t)
+      changed = std::max(changed,
+                         static_cast<double>((out[t].row(LeftKnee) - out[t].row(Pelvis) -
+                                              source[t].joints.row(LeftKnee) + source[t].joints.row(Pelvis))
+                                                 .norm()));
+    EXPECT_GT(changed, 0.03) << name;
+  }
+}
+
 TEST(MannerStyle, AChildSwaysMoreAndTurnsTheHeadMore) {
   const auto source = motion("dance");
   const auto style = style_of("child");
