@@ -7,11 +7,6 @@
 #include "retarget/base/text.hpp"
 
 namespace understudy {
-namespace {
-
-constexpr int64_t kLargestSide = 65536;
-
-}  // namespace
 
 std::string canvas_text(const Canvas& canvas) {
   return std::to_string(canvas.width) + " x " + std::to_string(canvas.height);
@@ -21,8 +16,8 @@ Canvas parse_canvas(const std::string& text) {
   const std::vector<std::string> sides = split(lower_case(text), 'x');
   int64_t width = 0, height = 0;
   const bool good = sides.size() == 2 && parse_integer(sides[0], width) && parse_integer(sides[1], height) &&
-                    width > 0 && height > 0 && width <= kLargestSide && height <= kLargestSide;
-  US_CHECK(good, "a canvas is given as 1280x720, each side at most ", kLargestSide, " pixels, not as '",
+                    width > 0 && height > 0 && width <= kLargestCanvas && height <= kLargestCanvas;
+  US_CHECK(good, "a canvas is given as 1280x720, each side at most ", kLargestCanvas, " pixels, not as '",
            excerpt(text), "'");
   return {static_cast<int>(width), static_cast<int>(height)};
 }

@@ -10,7 +10,9 @@
 
 namespace understudy {
 
-/// Size of the picture that the points lie on, pixels.
+constexpr int kLargestCanvas = 65536;
+
+/// Size of the picture that the points lie on, pixels; each side at most kLargestCanvas.
 struct Canvas {
   int width = 0, height = 0;
   bool is_known() const { return width > 0 && height > 0; }

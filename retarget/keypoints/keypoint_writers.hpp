@@ -19,8 +19,8 @@ void write_coco_results(const std::string& path, const KeypointReading& reading)
 /// A line a person and frame: frame, seconds, person, then x, y, c of each point; hands and face where
 /// anybody has them. What is missing is empty.
 void write_keypoint_csv(const std::string& path, const KeypointReading& reading);
-/// Arrays: keypoints [T, P, K, 3], people [P], frames [T], canvas [2], fps, layout (BODY_25, with hands and
-/// face where anybody has them). Nothing is lost.
+/// Arrays: keypoints [T, P, K, 3] (P: most at a time), people [T, P] (-1: nobody), frames [T], canvas [2],
+/// fps, layout (BODY_25, with hands and face where anybody has them). Nothing is lost.
 void write_keypoint_npz(const std::string& path, const KeypointReading& reading);
 
 /// One frame of `write_openpose_folder` and of `write_controlnet`, as text.
