@@ -6,8 +6,8 @@
 
 #include "retarget/base/error.hpp"
 #include "retarget/base/index.hpp"
+#include "retarget/math/cheapest_pairs.hpp"
 #include "retarget/math/rotation.hpp"
-#include "retarget/metrics/cheapest_pairs.hpp"
 
 namespace understudy {
 namespace {

@@ -9,9 +9,9 @@
 #include "retarget/base/error.hpp"
 #include "retarget/base/index.hpp"
 #include "retarget/geometry/surface_places.hpp"
+#include "retarget/math/cheapest_pairs.hpp"
 #include "retarget/math/percentile.hpp"
 #include "retarget/math/rotation.hpp"
-#include "retarget/metrics/cheapest_pairs.hpp"
 #include "retarget/metrics/surface_metrics.hpp"
 #include "retarget/metrics/voxel_metrics.hpp"
 

@@ -7,7 +7,7 @@
 #include <numeric>
 
 #include "retarget/base/error.hpp"
-#include "retarget/metrics/cheapest_pairs.hpp"
+#include "retarget/math/cheapest_pairs.hpp"
 #include "tests/support/moving_arm.hpp"
 
 namespace understudy {

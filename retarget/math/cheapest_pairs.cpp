@@ -1,4 +1,4 @@
-#include "retarget/metrics/cheapest_pairs.hpp"
+#include "retarget/math/cheapest_pairs.hpp"
 
 #include <limits>
 
