@@ -91,6 +91,7 @@ struct TakeState {
   std::shared_ptr<const RowMatrix> weights;  ///< [V, 22], edited
   std::shared_ptr<const Deformer> deformer;  ///< bound to the target, with those weights
   SharedFrames<KeptFrame> performed;         ///< the engine's frames
+  std::string rights;                        ///< what files made of them have to say; empty: nothing
   SharedFrames<KeptSource> another;          ///< who is performed, where that is not the source's person
   LimbsSight limbs{};                        ///< the least that is seen of each limb so far
   Motion shown;                ///< after the user's edits of the result; may trail `performed` shortly

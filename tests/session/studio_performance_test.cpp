@@ -4,7 +4,10 @@
 #include "app/session/command_sets.hpp"
 #include "app/session/take_export.hpp"
 #include "retarget/base/error.hpp"
+#include "retarget/base/file.hpp"
+#include "retarget/base/index.hpp"
 #include "retarget/math/rotation.hpp"
+#include "retarget/style/manner_file.hpp"
 #include "tests/session/studio_fixture.hpp"
 
 namespace understudy::app {
@@ -89,6 +92,39 @@ TEST_F(PerformanceTest, AStylesFileThatIsGoneEndsThatTakeAlone) {
   EXPECT_NE(state(0).problem.find("mine.json: there is no such file"), std::string::npos) << state(0).problem;
   EXPECT_TRUE(state(1).problem.empty());
   EXPECT_FALSE(state(1).shown.poses.empty());
+}
+
+TEST_F(PerformanceTest, TheRightsOfAStyleGoIntoWhatIsExported) {
+  const auto with_rights = [&](const std::string& name, const std::string& licence,
+                               const std::string& whose) {
+    MannerFile file = read_manner(US_SOURCE_DIR "/assets/styles/old.json");
+    file.note.label = name, file.note.licence = licence, file.note.attribution = whose;
+    std::ofstream(path(name + ".json")) << to_json(file);
+    return path(name + ".json");
+  };
+  const auto exported = [&](const std::string& file, const Arguments& more = {}) {
+    Arguments arguments = {"0", path(file)};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    run("export.run", arguments);
+    return read_file(path(file));
+  };
+  const auto has = [](const std::string& file, const std::string& words) {
+    return file.find(words) != std::string::npos;
+  };
+  EXPECT_FALSE(has(exported("plain.glb"), "copyright"));
+  run("method.style", {"0", with_rights("bought", "CC BY-NC 4.0", "")});
+  const std::string bought = "Performed in the style bought, CC BY-NC 4.0 (non-commercial)";
+  EXPECT_TRUE(has(exported("bought.glb"), "\"copyright\":\"" + bought + "\""));
+  run("compare.add", {"0", "style=" + with_rights("lent", "CC BY 4.0", "by Somebody")});
+  run("take.rename", {"1", "other"});
+  const std::string lent = "Performed in the style lent, CC BY 4.0, by Somebody";
+  EXPECT_TRUE(has(exported("both.glb", {"take=other"}), bought + "; " + lent)) << "clips of one file";
+  run("export.all", {path("all"), "format=glb"});
+  EXPECT_TRUE(has(read_file(path("all/target.glb")), bought));
+  EXPECT_FALSE(has(read_file(path("all/target.glb")), lent));
+  EXPECT_TRUE(has(read_file(path("all/other.glb")), lent));
+  run("method.style", {"0", "old"});
+  EXPECT_FALSE(has(exported("free.glb"), "copyright")) << "its own licence asks for nothing";
 }
 
 TEST_F(PerformanceTest, ATakeInAStyleIsComparedWithOneWithout) {

@@ -21,7 +21,8 @@ struct StyleList {
 };
 
 std::string licence_words(const StyleNote& note) {
-  return note.licence + (note.non_commercial() ? ", non-commercial" : "");
+  const std::string words = note.licence + (note.non_commercial() ? ", non-commercial" : "");
+  return words + (note.attribution.empty() ? "" : ", " + note.attribution);
 }
 
 /// Those that come with the program, then those that were taught, then a file that is neither.
@@ -29,7 +30,8 @@ void draw_style_choice(const StyleList& list, const app::StylesState& kept, cons
                        PanelContext& context, const std::string& k) {
   std::vector<std::string> words = {"none"}, labels = {"None"}, tips = {"As the source moves"};
   const auto add = [&](const StyleNote& note, const std::string& word) {
-    words.push_back(word), labels.push_back(note.label);
+    words.push_back(word);
+    labels.push_back(note.label + (note.non_commercial() ? ", non-commercial" : ""));
     tips.push_back(note.sentence + ". Made from: " + note.made_from + ". Licence: " + licence_words(note));
   };
   for (const StyleNote& note : list.notes) add(note, note.name);
