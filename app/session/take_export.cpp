@@ -263,9 +263,8 @@ std::vector<TakeFile> take_files(const Session& session, const std::string& fold
 std::vector<TakeFile> figure_files(const Session& session, const std::string& folder) {
   return files_of(session, folder, ".csv", [&](size_t k, const std::string& path) -> WriteTake {
     US_CHECK(!session.takes[k].series.empty(), session.document.takes[k].name, ": there are no metrics yet");
-    return [path, series = session.takes[k].series, fps = session.source.fps](const auto&) {
-      write_csv(path, series, fps);
-    };
+    return [path, series = session.takes[k].series, times = session.takes[k].times,
+            fps = session.source.fps](const auto&) { write_csv(path, series, fps, times); };
   });
 }
 

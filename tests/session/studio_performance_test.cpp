@@ -64,6 +64,20 @@ TEST_F(PerformanceTest, AStyleChangesThePosesNotTheFramesAndIsUndone) {
   EXPECT_TRUE(same_poses(state().shown, before));
 }
 
+TEST_F(PerformanceTest, AStyleAsksForNoNewSkeletons) {
+  Studio scans(services());
+  open_both(scans);
+  const int extracted = *extractions_;
+  ASSERT_GE(extracted, kFrames);
+  for (const char* const strength : {"1", "0.5", "0"}) {
+    scans.run("method.style", {"0", "child"});
+    scans.run("method.style_strength", {"0", strength});
+    scans.wait_idle();
+    EXPECT_EQ(ssize(scans.session().takes[0].performed), kFrames);
+  }
+  EXPECT_EQ(*extractions_, extracted);
+}
+
 TEST_F(PerformanceTest, AStrengthOutOfRangeIsBroughtInto) {
   run("method.style", {"0", "child"});
   run("method.style_strength", {"0", "7"});
@@ -165,6 +179,55 @@ TEST_F(PerformanceTest, PlaybackGoesAtTheTempo) {
   s.run("playback.toggle");
   s.tick(0.5, 0.5);
   EXPECT_NEAR(s.session().playback.frame, s.session().source.fps, 2);
+}
+
+TEST_F(PerformanceTest, TheClockIsTheCurrentTakesAndAllViewsShowTheSameMomentOfTheAction) {
+  Studio& s = *studio;
+  run("edit.tempo", {"0", "2"});
+  run("edit.tempo_phase", {"0", "stroke", "0.6"});
+  run("compare.add", {"0"});
+  run("edit.tempo", {"1", "off"});
+  s.run("view.pane", {"1"});
+  ASSERT_EQ(s.session().selected_take, 0);
+  for (const int frame : {0, 1, 40, 99}) {
+    const double moment = moment_of(s.session(), frame);
+    EXPECT_EQ(moment, state().times[static_cast<size_t>(frame)]);
+    s.run("playback.seek", {std::to_string(moment + 1e-4)});
+    EXPECT_EQ(shown_frame(s.session()), frame);
+  }
+  const int frame = shown_frame(s.session());
+  s.run("view.pane", {"2"});
+  EXPECT_EQ(shown_frame(s.session()), frame) << "the same moment of the action";
+  EXPECT_DOUBLE_EQ(moment_of(s.session(), frame), frame / s.session().source.fps);
+  // Playback goes by the clock.
+  for (const char* const pane : {"1", "2"}) {
+    s.run("view.pane", {pane});
+    s.run("playback.frame", {"10"});
+    s.run("playback.play");
+    const double began = moment_of(s.session(), s.session().playback.frame);
+    for (int i = 0; i < 50; ++i) s.tick(0.01, 0.01);
+    EXPECT_NEAR(moment_of(s.session(), s.session().playback.frame), began + 0.5, 0.02) << pane;
+    s.run("playback.pause");
+  }
+}
+
+TEST_F(PerformanceTest, TheTableOfFiguresHasTheStylesInBothTimes) {
+  run("method.style", {"0", "child"});
+  const auto table = [&] {
+    run("export.csv", {"0", path("figures.csv")});
+    return read_file(path("figures.csv"));
+  };
+  const auto turn = [&] { return find(state().series, "head_turn")->values[40]; };
+  const std::string plain = table();
+  EXPECT_EQ(plain.rfind("frame,seconds,confidence", 0), 0u) << plain.substr(0, 100);
+  EXPECT_NE(plain.find("head_turn"), std::string::npos);
+  EXPECT_NE(plain.find("pelvis_speed"), std::string::npos);
+  const float before = turn();
+  run("edit.tempo", {"0", "2"});
+  EXPECT_NEAR(turn(), before / 2, 1e-3f * before) << "as it is seen";
+  const std::string slow = table();
+  EXPECT_EQ(slow.rfind("frame,seconds,take_seconds,confidence", 0), 0u) << slow.substr(0, 100);
+  EXPECT_NE(slow.find("\n30,1,2,"), std::string::npos) << "at 30 frames/s";
 }
 
 TEST_F(PerformanceTest, MomentsAreHeldAndShiftedAndNotTurnedBack) {
