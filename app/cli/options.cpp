@@ -220,12 +220,7 @@ nlohmann::ordered_json style_json(const StyleChoice& style) {
 }
 
 std::string style_rights(const StyleChoice& style) {
-  if (!style.any()) return "";
-  const StyleNote note = nn::style_note(style);
-  if (!note.non_commercial() && note.attribution.empty()) return "";
-  std::string rights = "Performed in the style " + note.label + ", " + note.licence;
-  if (note.non_commercial()) rights += " (non-commercial)";
-  return rights + (note.attribution.empty() ? "" : ", " + note.attribution);
+  return style.any() ? nn::style_note(style).rights() : "";
 }
 
 std::function<std::shared_ptr<MotionSpace>()> motion_space_loader(const MethodOptions& how) {

@@ -6,6 +6,7 @@
 
 #include "app/run/report.hpp"
 #include "retarget/base/error.hpp"
+#include "retarget/base/log.hpp"
 #include "retarget/base/part_file.hpp"
 #include "retarget/base/text.hpp"
 #include "retarget/character/own_bones.hpp"
@@ -271,7 +272,12 @@ void check_own_bones(const std::string& path, const ExportFormat& format) {
 std::unique_ptr<MotionOutput> open_export(const std::string& path, const ExportFormat& format,
                                           const ExportBody& body, const std::string& name, double fps) {
   check_export_options(path, format, body.file);
+  if (!format.is_character) tell_left_out(path, body.file.rights);
   return format.open(path, body, name, fps);
+}
+
+void tell_left_out(const std::string& path, const std::string& rights) {
+  if (!rights.empty()) log::warn(path + ": such a file has no place for its rights: " + rights);
 }
 
 ExportCost export_motion(const std::string& path, const ExportFormat& format,

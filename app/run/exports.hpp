@@ -88,6 +88,9 @@ class MotionOutput {
 std::unique_ptr<MotionOutput> open_export(const std::string& path, const ExportFormat& format,
                                           const ExportBody& body, const std::string& name, double fps);
 
+/// Logs these rights, where there are any: such a file has no place for them.
+void tell_left_out(const std::string& path, const std::string& rights);
+
 /// What one performer performs.
 struct ExportInput {
   ExportBody body;

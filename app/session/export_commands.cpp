@@ -94,8 +94,8 @@ void export_figures(Call& c) {
   const std::string path = c.path(1);
   c.studio.jobs().start(
       "Exporting " + file_name(path),
-      [path, series = state.series, fps = c.session.source.fps](JobControl&) {
-        write_csv(path, series, fps);
+      [path, series = state.series, times = state.times, fps = c.session.source.fps](JobControl&) {
+        write_csv(path, series, fps, times);
       },
       [&studio = c.studio, path] { studio.notify("Exported " + file_name(path), false, showing(path)); });
   c.session.settings.export_format = "csv";

@@ -87,14 +87,17 @@ ExportInput input_of(const Session& session, const std::vector<size_t>& takes, c
   const TakeState& state = session.takes[takes[0]];
   ExportInput out;
   out.name = take.name;
+  std::vector<std::string> rights;
   for (const size_t k : takes) {
     const std::string& name = session.document.takes[k].name;
     US_CHECK(session.takes[k].problem.empty(), name, ": ", session.takes[k].problem);
     US_CHECK(session.takes[k].ready && session.takes[k].character && !session.takes[k].shown.poses.empty(),
              name, ": has no frames to export yet");
     add_clip(out, session, k, takes.size() > 1 ? name : clip_name(session, take));
+    rights.push_back(session.takes[k].rights);
   }
   out.body = {state.character, state.deformer, choice.file};
+  out.body.file.rights = joined_once(rights, "; ");
   const bool own = on_their_rig(take.target, *state.character);
   US_CHECK(own || !choice.own_bones.value_or(false), take.name, ": does not perform on bones of its own");
   out.body.file.their_rig = choice.own_bones.value_or(own && choice.format->is_character);
@@ -260,9 +263,8 @@ std::vector<TakeFile> take_files(const Session& session, const std::string& fold
 std::vector<TakeFile> figure_files(const Session& session, const std::string& folder) {
   return files_of(session, folder, ".csv", [&](size_t k, const std::string& path) -> WriteTake {
     US_CHECK(!session.takes[k].series.empty(), session.document.takes[k].name, ": there are no metrics yet");
-    return [path, series = session.takes[k].series, fps = session.source.fps](const auto&) {
-      write_csv(path, series, fps);
-    };
+    return [path, series = session.takes[k].series, times = session.takes[k].times,
+            fps = session.source.fps](const auto&) { write_csv(path, series, fps, times); };
   });
 }
 
