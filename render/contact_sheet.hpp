@@ -1,5 +1,5 @@
-// A contact sheet: moments of a motion side by side, the scan with its extracted skeleton, and the target; and
-// a strip: several performers of it, a row each.
+// A contact sheet: moments of a motion side by side, the scan with its extracted skeleton, and the target;
+// and a strip: several performers of it, a row each.
 #pragma once
 
 #include <optional>

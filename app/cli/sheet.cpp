@@ -55,7 +55,9 @@ SheetFile file_of(const std::string& text) {
 
 /// Times from `from_s` on, of what lasts `length_s`.
 std::vector<double> sheet_times(const SheetCommand& command, double length_s) {
-  const double end = command.seconds ? command.from_s + *command.seconds : length_s;
+  const double end = std::min(length_s, command.from_s + command.seconds.value_or(length_s));
+  US_CHECK(command.from_s <= length_s, "--from ", command.from_s, ": it lasts ", printed("%.2f", length_s),
+           " s");
   std::vector<double> times;
   for (int i = 0; command.from_s + i * command.every_s <= end + 1e-6; ++i) {
     US_CHECK(i < kMostMoments, "--every ", command.every_s, ": there would be more than ", kMostMoments,
