@@ -1,9 +1,9 @@
 #!/bin/bash
 # screenshots/performance.sh [WHAT...]: makes the pictures of styles in this folder, 47 to 54. WHAT: studio (47 to 50), strips
-# (51, 52), stimuli (53), bands (54); without one all.
+# (51, 52), stimuli (53), figures (54); without one all.
 # Needs build/understudy, or $UNDERSTUDY, and what ./test installs (chromium). With the folder $OUT it makes PNGs there, as
 # tests do. DATA: a data folder (see train --data) whose CMU jump and walk the strips show, and a jump of a child of eight;
-# without it they show the bundled walk.
+# the figures are of its Kinder-Gator clips. Without it there are no figures, and one strip, of the bundled walk.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 understudy=${UNDERSTUDY:-$PWD/build/understudy}
@@ -57,14 +57,27 @@ stimuli() {
   shown 53_style_stimuli 1400
 }
 
-bands() {
-  awk -f screenshots/bands.awk README.md >"${OUT:-screenshots}/54_style_bands.svg"
+# figures: of 17 gestures of the arms, adults' in the style over children's.
+figures() {
+  local clip subject manner
+  local arms='_[0-9]+_((raise|wave)_your|push|swipe|point|signal|throw|punch)'
+  [ -n "${DATA:-}" ] || { echo "performance.sh: no figures without DATA" >&2; return; }
+  for clip in "$DATA"/motion/kinder_gator/*/*.npz; do
+    [[ $clip =~ $arms ]] || continue
+    subject=$(basename "$(dirname "$clip")")
+    [[ $clip == */kg_a* ]] && manner=adult || manner=child
+    mkdir -p "$work/clips/$manner/$subject"
+    ln -s "$(realpath "$clip")" "$work/clips/$manner/$subject/"
+  done
+  "$understudy" cases "$work/clips" --suite style --from adult --to child --out "$work/cases"
+  "$understudy" eval "$work/cases" --style child --pictures "$work"
+  cp "$work/style_figures.png" "${OUT:-screenshots}/54_style_figures.png"
 }
 
-[ $# -gt 0 ] || set -- studio strips stimuli bands
+[ $# -gt 0 ] || set -- studio strips stimuli figures
 for what in "$@"; do
   case $what in
-    studio | strips | stimuli | bands) $what ;;
+    studio | strips | stimuli | figures) $what ;;
     *) echo "performance.sh: no picture is called '$what'" >&2; exit 2 ;;
   esac
 done
