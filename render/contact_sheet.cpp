@@ -283,6 +283,7 @@ Image contact_sheet(Renderer& renderer, const std::vector<SheetMoment>& moments,
   std::vector<Row> rows = rows_of(sources, targets, options);
   US_CHECK(!rows.empty(), "a contact sheet needs a scan, joints or a target to show");
   std::vector<Header> headers;
+  headers.reserve(moments.size());
   for (const SheetMoment& moment : moments)
     headers.push_back({"Frame " + std::to_string(moment.frame), time_text(moment.seconds)});
   return draw(renderer, std::move(rows), headers, options, have_sides(moments));
@@ -314,6 +315,7 @@ Image strip(Renderer& renderer, const std::vector<StripRow>& performers, const s
   }
   US_CHECK(anybody, "nobody is to be seen in the strip");
   std::vector<Row> rows;
+  rows.reserve(cells.size());
   for (size_t r = 0; r < cells.size(); ++r)
     rows.push_back(
         {side_by_side ? time_text(seconds[0]) : performers[r].caption, options.yaw, &cells[r], 0.5f, {}});
