@@ -164,7 +164,9 @@ TEST_F(Styling, AStyleIsJudgedOnCasesOfTheSuite) {
   EXPECT_EQ(plain["style_share"]["mean"], 0) << plain.dump();
   EXPECT_EQ(plain["jerk_ratio"]["mean"], 1);
   EXPECT_LT(plain["dtw_deg"]["mean"], 0.1);
-  const Json styled = figures({"--style", out("dance.json"), "--style-back", out("dance.json")});
+  const Json styled = figures(
+      {"--style", out("dance.json"), "--style-back", out("dance.json"), "--pictures", out("pictures")});
+  EXPECT_TRUE(std::filesystem::exists(out("pictures/style_figures.png")));
   EXPECT_EQ(styled["style_share"]["mean"], 100) << styled.dump();
   EXPECT_GT(styled["dtw_deg"]["mean"], 3);
   EXPECT_TRUE(styled.contains("cycle_share"));
