@@ -155,7 +155,7 @@ void FrameDecoder::tell(KeypointReading& reading) const {
   if (decided_->scale != Scale::Pixels)
     tell(std::string("places are in ") + (decided_->scale == Scale::Signed ? "-1..1" : "0..1") +
          " of the canvas");
-  tell(short_number(fps_) + " frames/s " +
+  tell(printed("%.6g", fps_) + " frames/s " +
        (options_.fps > 0         ? "as asked"
         : reading.fps_is_guessed ? "assumed"
                                  : "as the file says"));
