@@ -74,6 +74,15 @@ TEST(PeopleTracker, IdsInTheFileAreBelieved) {
   EXPECT_NE(twice[1], 1) << "nobody is in a frame twice";
 }
 
+TEST(PeopleTracker, SomebodyOfWhomOnlyAHandIsSeenIsOnePerson) {
+  PeopleTracker tracker;
+  for (int t = 0; t < 20; ++t) {
+    FlatPose hand;
+    hand.left_hand = small_part(walker(100 + 2.0f * static_cast<float>(t)), body25::LeftWrist, kHandPoints);
+    EXPECT_EQ(tracker.push(sightings({walker(600), hand}), kFrame), (std::vector<int>{0, 1})) << t;
+  }
+}
+
 TEST(PeopleTracker, CrowdsThatFlickerTakeBoundedTime) {
   PeopleTracker tracker;
   for (int t = 0; t < 30; ++t) {
