@@ -73,8 +73,8 @@ size_t bytes_size(const std::string& bytes) {
   return kOfBytes * bytes.size();
 }
 
-// Frames of poses that are missing between numbers take their places, each with its sentence: up to twenty for
-// each frame there is, and a thousand.
+// Frames of poses that are missing between numbers take their places, each with its sentence: up to twenty
+// for each frame there is, and a thousand.
 size_t declared_by_poses(const std::string& bytes) {
   constexpr size_t kMissingFrame = 256, kMost = 20, kAtOnce = 1000;
   const auto frames = static_cast<size_t>(std::count(bytes.begin(), bytes.end(), '{') +

@@ -86,9 +86,12 @@ TEST(KeypointFilter, AMissingPointGoesOnForHalfASecond) {
     if (t == 44) continue;  // half a second, but for rounding
     EXPECT_EQ(clean.pose.has(body25::RightWrist), goes_on) << t;
     EXPECT_EQ(clean.points_filled, goes_on ? 1 : 0);
-    if (t < 36)
+    if (t < 36) {
       EXPECT_LT((clean.pose.at(body25::RightWrist) - dancer(t).at(body25::RightWrist)).norm(), 8) << t;
-    if (goes_on) EXPECT_LT(clean.pose.confidence(body25::RightWrist), 1);
+    }
+    if (goes_on) {
+      EXPECT_LT(clean.pose.confidence(body25::RightWrist), 1);
+    }
   }
 }
 
@@ -101,7 +104,9 @@ TEST(KeypointFilter, ExchangedSidesArePutBack) {
     const CleanPose clean = filter.push(&pose, kFrame);
     EXPECT_EQ(clean.sides_mended, is_exchanged) << t;
     EXPECT_LT(farthest_apart(clean.pose, dancer(t)), 9) << t;
-    if (is_exchanged) EXPECT_EQ(clean.problem, "left and right were exchanged and are put back");
+    if (is_exchanged) {
+      EXPECT_EQ(clean.problem, "left and right were exchanged and are put back");
+    }
   }
 }
 
@@ -123,7 +128,9 @@ TEST(KeypointFilter, AFirstFrameThatIsWrongIsNotBelievedForEver) {
   for (int t = 0; t < 90; ++t) {
     const FlatPose pose = t < 3 ? sides_exchanged(dancer(t)) : dancer(t);
     const CleanPose clean = filter.push(&pose, kFrame);
-    if (t > 40) EXPECT_LT(farthest_apart(clean.pose, dancer(t)), 9) << t;
+    if (t > 40) {
+      EXPECT_LT(farthest_apart(clean.pose, dancer(t)), 9) << t;
+    }
   }
 }
 

@@ -71,7 +71,9 @@ TEST(KeypointLayout, ThereAndBackKeepsWhatTheLayoutHas) {
   for (const KeypointLayout& layout : keypoint_layouts()) {
     const FlatPose back = pose_of_layout(layout, points_in_layout(layout, pose));
     for (int p = 0; p < kBodyPoints; ++p)
-      if (layout.body[static_cast<size_t>(p)] >= 0) EXPECT_EQ(back.at(p), pose.at(p)) << layout.name;
+      if (layout.body[static_cast<size_t>(p)] >= 0) {
+        EXPECT_EQ(back.at(p), pose.at(p)) << layout.name;
+      }
   }
   EXPECT_EQ(
       pose_of_layout(*layout_named("openpose137"), points_in_layout(*layout_named("openpose137"), pose)),

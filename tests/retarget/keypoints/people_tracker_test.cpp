@@ -37,7 +37,9 @@ TEST(PeopleTracker, TwoWhoCrossKeepTheirNames) {
     if (is_hidden) people.pop_back();
     const std::vector<int> found = tracker.push(people, kFrame);
     EXPECT_EQ(found[0], 0) << t;
-    if (!is_hidden) EXPECT_EQ(found[1], 1) << t;
+    if (!is_hidden) {
+      EXPECT_EQ(found[1], 1) << t;
+    }
   }
   EXPECT_EQ(tracker.count(), 2);
 }
