@@ -159,6 +159,8 @@ void FrameDecoder::tell(KeypointReading& reading) const {
        (options_.fps > 0         ? "as asked"
         : reading.fps_is_guessed ? "assumed"
                                  : "as the file says"));
+  if (!tracker_.believes_ids())
+    tell("two in one frame have the same number, so people are followed by where they are");
   if (left_out_ > 0)
     tell(counted(left_out_, "frame") + (left_out_ == 1 ? " is" : " are") +
          " there twice or out of order and left out, the first of them " + std::to_string(first_left_out_));

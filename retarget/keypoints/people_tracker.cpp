@@ -150,20 +150,29 @@ void PeopleTracker::forget() {
   paths_.resize(kMostPaths);
 }
 
+/// AlphaPose numbers everybody 0 where it does not follow people.
+void PeopleTracker::check_ids(const std::vector<PersonSighting>& people) {
+  std::set<int64_t> ids;
+  for (const PersonSighting& person : people)
+    if (person.id && !ids.insert(*person.id).second) believes_ids_ = false;
+  if (believes_ids_) return;
+  for (Path& path : paths_) path.has_id = false;
+}
+
 std::vector<int> PeopleTracker::push(const std::vector<PersonSighting>& people, double dt) {
+  if (believes_ids_) check_ids(people);
   for (Path& path : paths_) path.unseen += dt;
   std::vector<int> path_of(people.size(), -1);
   std::vector<char> taken(paths_.size(), 0);
   const bool alone = people.size() == 1;
   for (size_t i = 0; i < people.size(); ++i) {
-    if (!people[i].id) continue;
+    if (!people[i].id || !believes_ids_) continue;
     const auto known = person_of_id_.find(*people[i].id);
     const auto is_it = [&](const Path& path) {
       return known != person_of_id_.end() && path.person == known->second;
     };
     const auto path = std::find_if(paths_.begin(), paths_.end(), is_it);
     const size_t p = static_cast<size_t>(path - paths_.begin());
-    if (path != paths_.end() && taken[p]) continue;  // the same id twice in one frame: the second is followed
     path_of[i] = static_cast<int>(path != paths_.end() ? p : add_path(people[i].id));
     taken.resize(paths_.size(), 0);
     taken[static_cast<size_t>(path_of[i])] = 1;
