@@ -10,7 +10,7 @@ namespace understudy::nn {
 
 /// Of the network's form and what it sees; weights of another version are refused.
 constexpr int kProportionVersion = 1;
-constexpr int kProportionWidth = 320;
+constexpr int kProportionWidth = 448;
 /// What the network's logarithms of deviations are kept between.
 constexpr float kLeastLogDoubt = -5, kMostLogDoubt = 1;
 

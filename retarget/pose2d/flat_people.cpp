@@ -272,6 +272,7 @@ DetectorErrors random_errors(Rng& rng) {
   };
   const float quality = rng.uniform();
   errors.jitter = rng.chance(0.3f) ? 0 : 0.6f * quality * quality;
+  errors.jitter_m = sometimes(0.3f, 0.03f);
   errors.missing = sometimes(0.3f, 0.25f);
   errors.limbs_missing = sometimes(0.2f, 0.5f);
   errors.exchanged = sometimes(0.15f, 0.3f);

@@ -16,7 +16,7 @@
 namespace understudy::training {
 namespace {
 
-constexpr int kTrackFrames = 55, kTrackStep = 6;  // two seconds
+constexpr int kShortestTrack = 20, kTrackStep = 6;  // two seconds, where a clip is so long
 constexpr uint64_t kFigureSeed = 20210203;
 constexpr float kFigurePitch = kPi / 12, kJitter = 0.015f;
 
@@ -32,12 +32,12 @@ constexpr std::array<SuiteKind, 3> kSuites = {
 struct Take {
   FlatPerson person;
   const Clip* clip;
-  int first;
+  int first, step;
   Pinhole camera;
 };
 
 FlatPose seen_of(const Take& take, int number, const DetectorErrors& errors, Rng& rng) {
-  const Pose& pose = take.clip->motion.poses[static_cast<size_t>(take.first + number * kTrackStep)];
+  const Pose& pose = take.clip->motion.poses[static_cast<size_t>(take.first + number * take.step)];
   return detected(seen_flat(take.person, pose, take.camera), errors, rng);
 }
 
@@ -81,15 +81,16 @@ Proportions known(const BoneLengths& length) {
 
 ProportionFigures::ProportionFigures(const TrainingData& data, int cases) {
   const std::vector<FlatPerson> people = flat_people_of(data);
-  const std::vector<ClipRun> runs = good_runs(data.clips, kTrackFrames, std::numeric_limits<int>::max());
-  US_CHECK(!runs.empty(), "the data has no clip with ", kTrackFrames, " frames in a row to judge on");
+  const std::vector<ClipRun> runs = good_runs(data.clips, kShortestTrack, std::numeric_limits<int>::max());
+  US_CHECK(!runs.empty(), "the data has no clip with ", kShortestTrack, " frames in a row to judge on");
   for (const SuiteKind& kind : kSuites) {
     Rng rng(kFigureSeed);
     const auto any_run = [&] { return runs[static_cast<size_t>(rng.below(static_cast<int>(runs.size())))]; };
     const auto take = [&](bool odd, const ClipRun& run) {
+      const int step = std::min(kTrackStep, (run.count - 1) / (kTrack - 1));
       Take made{people[static_cast<size_t>(rng.below(static_cast<int>(people.size())))],
                 &data.clips[static_cast<size_t>(run.clip)],
-                run.first + rng.below(run.count - kTrackFrames + 1), some_camera(rng)};
+                run.first + rng.below(run.count - step * (kTrack - 1)), step, some_camera(rng)};
       if (odd) made.person = scaled_apart(made.person, random_scales(rng));
       return made;
     };

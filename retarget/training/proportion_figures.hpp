@@ -18,7 +18,7 @@ using ReadLengths = std::function<std::vector<PoseLengths>(const std::vector<Fla
 /// bones scaled apart, the performer in every other case; `noisy`: odd, points 15 mm off along each axis.
 class ProportionFigures {
  public:
-  /// Throws Error when the data has no two clips with two seconds in a row.
+  /// Throws Error when the data has no clip with 20 frames in a row.
   ProportionFigures(const TrainingData& data, int cases);
   /// oks and bone_ratio with lengths from one pose of each, and from ten over two seconds.
   Figures of(const ReadLengths& read) const;
