@@ -151,7 +151,7 @@ TEST_F(Proportions, TrainingIsJudgedOnWhatEveryReaderStandsBetween) {
   nn::ProportionNet net;
   const Figures untrained =
       figures.of([&](const std::vector<FlatPose>& poses) { return read_lengths(net, poses); });
-  EXPECT_EQ(untrained.size(), 12u);
+  EXPECT_EQ(untrained.size(), 16u);
   EXPECT_LT(value(untrained, "oks_odd_1"), value(baselines, "true_ratios_odd"));
   EXPECT_GT(value(untrained, "bone_ratio_odd_1"), 5);
 }
