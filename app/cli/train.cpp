@@ -59,6 +59,7 @@ void add_own(CLI::App& command, nn::PartTrainOptions& options) {
       ->check(CLI::IsMember(std::vector<std::string>(nn::kPartKindNames.begin(), nn::kPartKindNames.end())));
 }
 void add_own(CLI::App&, nn::DeformationTrainOptions&) {}
+void add_own(CLI::App&, nn::ProportionsTrainOptions&) {}
 void add_own(CLI::App& command, nn::MotionSpaceTrainOptions& options) {
   command
       .add_option(
@@ -210,6 +211,7 @@ Action declare_train(CLI::App& command) {
   add_style(command, chosen);
   add_network<nn::StyleJudgeTrainOptions>(command, "judges of style, from a folder of clips for each",
                                           chosen);
+  add_network<nn::ProportionsTrainOptions>(command, "how long a person's bones are, from a 2D pose", chosen);
   return [chosen] { return (*chosen)(); };
 }
 

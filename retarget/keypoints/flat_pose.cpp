@@ -84,6 +84,13 @@ FlatPose sides_exchanged(const FlatPose& pose) {
   return out;
 }
 
+FlatPose in_mirror(const FlatPose& pose) {
+  FlatPose out = sides_exchanged(pose);
+  out.body.col(0) *= -1;
+  for (FlatPoints* points : {&out.left_hand, &out.right_hand, &out.face}) points->col(0) *= -1;
+  return out;
+}
+
 void add_middles(FlatPose& pose) {
   using namespace body25;
   add_middle(pose, Neck, LeftShoulder, RightShoulder);

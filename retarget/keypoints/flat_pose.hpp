@@ -89,6 +89,8 @@ FlatBox box_of(const FlatPose& pose);
 float size_of(const FlatPose& pose);
 /// Left and right exchanged, hands with the arms; places stay. The face is not of two sides.
 FlatPose sides_exchanged(const FlatPose& pose);
+/// The person in a mirror, about x = 0.
+FlatPose in_mirror(const FlatPose& pose);
 /// Neck from the shoulders and mid-hip from the hips where they are missing and both of those are seen: the
 /// middle, with the lower confidence.
 void add_middles(FlatPose& pose);

@@ -5,18 +5,13 @@
 #include <limits>
 
 #include "retarget/keypoints/hand_pairs.hpp"
+#include "retarget/keypoints/point_deviations.hpp"
 
 namespace understudy {
 namespace {
 
 constexpr int kPaperPoints = 15;
 constexpr double kNotKnown = std::numeric_limits<double>::quiet_NaN();
-constexpr double kAreaOfBox = 0.53;  // a person's, of the box
-
-/// COCO's: nose, neck, right and left shoulder to wrist, mid-hip, right and left hip to ankle.
-constexpr std::array<double, kPaperPoints> kSigma = {0.026, 0.079, 0.079, 0.072, 0.062, 0.079, 0.072, 0.062,
-                                                     0.107, 0.107, 0.087, 0.089, 0.107, 0.087, 0.089};
-
 bool both(const FlatPose& a, const FlatPose& b, int point) {
   return a.has(point) && b.has(point);
 }
@@ -63,7 +58,7 @@ double keypoint_similarity(const FlatPose& pose, const FlatPose& truth) {
   const Vec2 size = paper_box(truth, truth).sizes();
   const double area = kAreaOfBox * static_cast<double>(size.x()) * static_cast<double>(size.y());
   return 100 * mean_over_points(pose, truth, [&](int point, double far) {
-           const double k = 2 * kSigma[static_cast<size_t>(point)];
+           const double k = 2 * kPointDeviation[static_cast<size_t>(point)];
            return std::exp(-far * far / std::max(2 * area * k * k, 1e-12));
          });
 }

@@ -16,6 +16,7 @@
 #include "retarget/base/text.hpp"
 #include "retarget/motion_space/paper_space.hpp"
 #include "retarget/networks/dense_extractor.hpp"
+#include "retarget/networks/length_reader.hpp"
 #include "retarget/networks/network_deformer.hpp"
 #include "retarget/networks/plugin_api.hpp"
 #include "retarget/networks/weights_layout.hpp"
@@ -184,6 +185,10 @@ std::unique_ptr<MotionCoder> load_motion_coder(const std::string& folder) {
 
 std::unique_ptr<StyleJudge> load_style_judge(const std::string& path) {
   return plugin().load_style_judge(path);
+}
+
+std::unique_ptr<LengthReader> load_length_reader(const std::string& folder) {
+  return load_network_length_reader(folder + "/proportions.weights");
 }
 
 RuntimeReport runtime_report() {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "retarget/pipeline/interfaces.hpp"
+#include "retarget/pipeline/keypoint_transfer.hpp"
 #include "retarget/pipeline/motion_coder.hpp"
 #include "retarget/pipeline/motion_space.hpp"
 #include "retarget/pipeline/motion_style.hpp"
@@ -48,6 +49,11 @@ std::unique_ptr<MotionCoder> load_motion_coder(const std::string& folder);
 /// The judges of style of a weights file. Throws Error naming it when it is missing, damaged, of another
 /// network or of another version.
 std::unique_ptr<StyleJudge> load_style_judge(const std::string& path);
+
+/// What reads lengths off 2D poses, with the weights in that folder (proportions.weights); it needs no
+/// LibTorch. Throws Error naming the file when it is missing, damaged, of another network or of another
+/// version.
+std::unique_ptr<LengthReader> load_length_reader(const std::string& folder);
 
 /// The folder that weights are read from; empty when there is none.
 std::string weights_folder(const NetworkOptions& options);

@@ -8,7 +8,7 @@
 
 namespace understudy::nn {
 
-constexpr int kPluginVersion = 13;
+constexpr int kPluginVersion = 14;
 
 struct PluginApi {
   int version;

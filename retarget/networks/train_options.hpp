@@ -83,9 +83,14 @@ struct StyleJudgeTrainOptions : TrainOptions {
   std::string licence, attribution, made_from;  ///< written into the weights
 };
 
+/// Where there is neither minutes nor samples, as many samples as the shipped weights saw.
+struct ProportionsTrainOptions : TrainOptions {
+  static constexpr const char* kNetwork = "proportions";
+};
+
 using AnyTrainOptions =
     std::variant<SkeletonTrainOptions, PartTrainOptions, MotionTrainOptions, DeformationTrainOptions,
-                 MotionSpaceTrainOptions, StyleTrainOptions, StyleJudgeTrainOptions>;
+                 MotionSpaceTrainOptions, StyleTrainOptions, StyleJudgeTrainOptions, ProportionsTrainOptions>;
 
 /// Trains until the minutes or samples are used up, going on from the checkpoint where there is one. 0 when
 /// it came to the end, 1 when it was cancelled. Throws Error.

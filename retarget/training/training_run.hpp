@@ -140,6 +140,8 @@ int train(const nn::MotionSpaceTrainOptions& options);
 int train(const nn::StyleTrainOptions& options);
 /// Samples are clips, of which some words are looked at; where the options have no end there is one.
 int train(const nn::StyleJudgeTrainOptions& options);
+/// Samples are poses; where the options have no end there is one.
+int train(const nn::ProportionsTrainOptions& options);
 /// Of the form "paper"; samples are steps.
 int train_steps(const nn::MotionSpaceTrainOptions& options);
 

@@ -206,10 +206,23 @@ TEST_F(Commands, TrainTrainsAndResumes) {
   EXPECT_EQ(run.code, 0) << run.err;
 }
 
+TEST_F(Commands, TrainLearnsToReadLengthsOffPoses) {
+  test::write_training_folder(scratch.path("data"));
+  const Finished run =
+      run_program({"train", "proportions", "--data", scratch.path("data"), "--out",
+                   out("proportions.weights"), "--batch", "16", "--samples", "32", "--threads", "1"});
+  ASSERT_EQ(run.code, 0) << run.err;
+  EXPECT_NE(run.err.find("true_ratios_odd"), std::string::npos) << run.err;  // what it is measured against
+  EXPECT_LT(fs::file_size(out("proportions.weights")), 1u << 20);
+}
+
 TEST_F(Commands, TrainWantsData) {
   expect_clean_failure(run_program({"train", "skeleton", "--samples", "1", "--data", scratch.path("absent"),
                                     "--out", out("s.weights")}),
                        "absent");
+  expect_clean_failure(
+      run_program({"train", "proportions", "--data", scratch.path("absent"), "--out", out("p.weights")}),
+      "absent");
   expect_clean_failure(
       run_program({"train", "skeleton", "--data", scratch.path("absent"), "--out", out("s.weights")}),
       "--minutes");
