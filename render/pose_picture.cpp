@@ -23,7 +23,7 @@ void set_pixel(Image& image, int x, int y, const uint8_t* rgb) {
 /// Calls inside(x, y) of the pixels of a box and colours those for which it is true. Coordinates are of the
 /// pixels' middles.
 template <class Inside>
-void fill(Image& image, const FlatBox& box, const uint8_t* rgb, const Inside& inside) {
+void fill_where(Image& image, const FlatBox& box, const uint8_t* rgb, const Inside& inside) {
   const float right = static_cast<float>(image.width - 1), bottom = static_cast<float>(image.height - 1);
   if (!box.min().allFinite() || !box.max().allFinite()) return;
   const int x0 = static_cast<int>(std::ceil(std::clamp(box.min().x(), 0.f, right + 1)));
@@ -40,8 +40,8 @@ FlatBox box_about(const Vec2& a, const Vec2& b, float reach) {
 }
 
 void fill_disc(Image& image, const Vec2& middle, float radius, const uint8_t* rgb) {
-  fill(image, box_about(middle, middle, radius), rgb,
-       [&](const Vec2& at) { return (at - middle).squaredNorm() <= radius * radius; });
+  fill_where(image, box_about(middle, middle, radius), rgb,
+             [&](const Vec2& at) { return (at - middle).squaredNorm() <= radius * radius; });
 }
 
 /// An ellipse from end to end.
@@ -49,7 +49,7 @@ void fill_stick(Image& image, const Vec2& a, const Vec2& b, float half_width, co
   const Vec2 middle = (a + b) / 2;
   const float half_length = std::max((b - a).norm() / 2, 0.5f);
   const Vec2 along = (b - a).norm() > 0 ? Vec2((b - a).normalized()) : Vec2(1, 0);
-  fill(image, box_about(a, b, half_width), rgb, [&](const Vec2& at) {
+  fill_where(image, box_about(a, b, half_width), rgb, [&](const Vec2& at) {
     const float u = (at - middle).dot(along) / half_length;
     const float v = ((at - middle).x() * along.y() - (at - middle).y() * along.x()) / half_width;
     return u * u + v * v <= 1;
@@ -59,7 +59,7 @@ void fill_stick(Image& image, const Vec2& a, const Vec2& b, float half_width, co
 /// A line with round ends.
 void fill_line(Image& image, const Vec2& a, const Vec2& b, float half_width, const uint8_t* rgb) {
   const float length = (b - a).squaredNorm();
-  fill(image, box_about(a, b, half_width), rgb, [&](const Vec2& at) {
+  fill_where(image, box_about(a, b, half_width), rgb, [&](const Vec2& at) {
     const float t = length > 0 ? std::clamp((at - a).dot(b - a) / length, 0.f, 1.f) : 0;
     return (a + t * (b - a) - at).squaredNorm() <= half_width * half_width;
   });

@@ -13,12 +13,12 @@ uint8_t rounded_byte(float value) {
 }
 
 /// Black, with a colour wherever there is a surface.
-template <class Colour>
-Image picture_of_seen(const SeenSurface& seen, const Colour& colour) {
+template <class Paint>
+Image picture_of_seen(const SurfaceView& seen, const Paint& paint) {
   Image image(seen.width, seen.height, Vec3::Zero());
   for (size_t at = 0; at < seen.face.size(); ++at) {
     if (seen.face[at] < 0) continue;
-    const Vec3 rgb = colour(at);
+    const Vec3 rgb = paint(at);
     for (size_t k = 0; k < 3; ++k) image.pixels[3 * at + k] = rounded_byte(rgb[static_cast<int>(k)]);
   }
   return image;
@@ -26,14 +26,7 @@ Image picture_of_seen(const SeenSurface& seen, const Colour& colour) {
 
 }  // namespace
 
-void DepthRange::hold(const SeenSurface& seen) {
-  for (const float depth : seen.depth) {
-    if (!std::isfinite(depth)) continue;
-    near = std::min(near, depth), far = std::max(far, depth);
-  }
-}
-
-Image depth_picture(const SeenSurface& seen, const DepthRange& range) {
+Image depth_picture(const SurfaceView& seen, const DepthRange& range) {
   const float span = std::max(range.far - range.near, 1e-6f);
   return picture_of_seen(seen, [&](size_t at) {
     const float share = std::clamp((range.far - seen.depth[at]) / span, 0.f, 1.f);
@@ -41,7 +34,7 @@ Image depth_picture(const SeenSurface& seen, const DepthRange& range) {
   });
 }
 
-Image normal_picture(const SeenSurface& seen, const Pinhole& camera, const Faces& faces,
+Image normal_picture(const SurfaceView& seen, const Pinhole& camera, const Faces& faces,
                      const Points& normals) {
   return picture_of_seen(seen, [&](size_t at) {
     Vec3 normal = Vec3::Zero();  // in the world
@@ -52,7 +45,7 @@ Image normal_picture(const SeenSurface& seen, const Pinhole& camera, const Faces
   });
 }
 
-Image mask_picture(const SeenSurface& seen) {
+Image mask_picture(const SurfaceView& seen) {
   return picture_of_seen(seen, [](size_t) { return Vec3::Constant(255).eval(); });
 }
 

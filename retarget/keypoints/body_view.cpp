@@ -118,10 +118,10 @@ void forget_hidden(FlatPose& pose, const BodyPlaces& places, const Pinhole& came
     if (!pose.has(point)) continue;
     const int x = static_cast<int>(std::lround(pose.at(point).x()));
     const int y = static_cast<int>(std::lround(pose.at(point).y()));
-    if (!skin.seen.is_inside(x, y)) continue;
-    const int face = skin.seen.face[skin.seen.at(x, y)];
+    if (!skin.view.is_inside(x, y)) continue;
+    const int face = skin.view.face[skin.view.at(x, y)];
     const float depth = camera.project(Vec3(places.row(point).transpose())).z();
-    if (face < 0 || depth - skin.seen.depth[skin.seen.at(x, y)] < kBefore) continue;
+    if (face < 0 || depth - skin.view.depth[skin.view.at(x, y)] < kBefore) continue;
     const int before = skin.joint_of_vertex[static_cast<size_t>(skin.faces(face, 0))];
     if (bones_between(before, kJointOfPoint[point]) >= kBonesAway) pose.forget(point);
   }

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "retarget/geometry/seen_surface.hpp"
+#include "retarget/geometry/surface_view.hpp"
 #include "retarget/keypoints/face_marks.hpp"
 #include "retarget/keypoints/keypoint_track.hpp"
 
@@ -40,7 +40,7 @@ FlatPose seen_pose(const BodyPlaces& places, const Mat3& head, const Pinhole& ca
 
 /// The skin of the body as the same camera sees it.
 struct SeenSkin {
-  const SeenSurface& seen;
+  const SurfaceView& view;
   const Faces& faces;
   const std::vector<int>& joint_of_vertex;  ///< [V], that it follows most
 };

@@ -9,7 +9,7 @@
 namespace understudy {
 
 /// Row by row from the top left, a value a pixel; what is seen is seen at the pixel's middle.
-struct SeenSurface {
+struct SurfaceView {
   static constexpr float kNothing = std::numeric_limits<float>::infinity();
 
   int width = 0, height = 0;
@@ -22,7 +22,7 @@ struct SeenSurface {
 };
 
 /// Faces are seen from both sides; those that reach behind the eye are left out. A cloud is not seen.
-SeenSurface seen_surface(const Pinhole& camera, int width, int height, const Points& vertices,
+SurfaceView surface_view(const Pinhole& camera, int width, int height, const Points& vertices,
                          const Faces& faces);
 
 }  // namespace understudy

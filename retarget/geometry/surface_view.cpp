@@ -1,4 +1,4 @@
-#include "retarget/geometry/seen_surface.hpp"
+#include "retarget/geometry/surface_view.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -9,7 +9,7 @@ namespace {
 constexpr float kNearest = 0.01f;  // metres before the eye
 
 /// One face drawn into what is seen so far. corners: x, y, depth of each as columns.
-void draw_face(const Pinhole& camera, const Mat3& corners, int face, SeenSurface& seen) {
+void draw_face(const Pinhole& camera, const Mat3& corners, int face, SurfaceView& seen) {
   const Vec3 x = corners.row(0), y = corners.row(1), z = corners.row(2);
   const float area = (x[1] - x[0]) * (y[2] - y[0]) - (x[2] - x[0]) * (y[1] - y[0]);
   if (!(std::abs(area) > 0)) return;
@@ -39,12 +39,12 @@ void draw_face(const Pinhole& camera, const Mat3& corners, int face, SeenSurface
 
 }  // namespace
 
-SeenSurface seen_surface(const Pinhole& camera, int width, int height, const Points& vertices,
+SurfaceView surface_view(const Pinhole& camera, int width, int height, const Points& vertices,
                          const Faces& faces) {
-  SeenSurface seen;
+  SurfaceView seen;
   seen.width = width, seen.height = height;
   const size_t pixels = static_cast<size_t>(width) * static_cast<size_t>(height);
-  seen.depth.assign(pixels, SeenSurface::kNothing);
+  seen.depth.assign(pixels, SurfaceView::kNothing);
   seen.face.assign(pixels, -1);
   seen.shares.assign(pixels, Vec3::Zero());
   const Points places = camera.project(vertices);
