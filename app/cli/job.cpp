@@ -131,6 +131,7 @@ Running start(const JobOptions& options) {
     ExportBody body{job.character, job.retargeter->performer().deformer(), {}};
     body.file.rights = style_rights(options.how.method.style);
     body.poses = options.poses;
+    if (format.is_pictures) body.file.progress = [](float) { check_interrupt("during the export"); };
     body.file.their_rig = format.is_character && on_their_rig(options.target, *job.character);
     job.output = open_export(options.out, format, body, file_name(options.source.path), job.source->fps());
   }

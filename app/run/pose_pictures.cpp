@@ -11,9 +11,9 @@
 #include "retarget/base/error.hpp"
 #include "retarget/base/part_file.hpp"
 #include "retarget/base/text.hpp"
-#include "retarget/keypoints/camera_fit.hpp"
 #include "retarget/keypoints/keypoint_reader.hpp"
 #include "retarget/keypoints/keypoint_writers.hpp"
+#include "retarget/pose2d/camera_fit.hpp"
 #include "retarget/skeleton/pose_curve.hpp"
 
 namespace understudy::app {

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "app/run/exports.hpp"
-#include "retarget/keypoints/body_view.hpp"
+#include "retarget/pose2d/body_view.hpp"
 
 namespace understudy::app {
 

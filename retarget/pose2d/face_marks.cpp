@@ -1,4 +1,4 @@
-#include "retarget/keypoints/face_marks.hpp"
+#include "retarget/pose2d/face_marks.hpp"
 
 #include <algorithm>
 #include <vector>

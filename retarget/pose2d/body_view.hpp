@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "retarget/geometry/surface_view.hpp"
-#include "retarget/keypoints/face_marks.hpp"
 #include "retarget/keypoints/keypoint_track.hpp"
+#include "retarget/pose2d/face_marks.hpp"
 
 namespace understudy {
 

@@ -1,7 +1,7 @@
 // The camera in which a body lies on a person in a picture.
 #pragma once
 
-#include "retarget/keypoints/body_view.hpp"
+#include "retarget/pose2d/body_view.hpp"
 
 namespace understudy {
 

@@ -1,12 +1,12 @@
 // A body in space as a detector sees it, the marks of its face, and the camera that lays it onto a reference.
-#include "retarget/keypoints/body_view.hpp"
+#include "retarget/pose2d/body_view.hpp"
 
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
 
 #include "retarget/body/builtin_person.hpp"
-#include "retarget/keypoints/camera_fit.hpp"
+#include "retarget/pose2d/camera_fit.hpp"
 #include "tests/retarget/formats/support.hpp"
 
 namespace understudy {

@@ -1,4 +1,4 @@
-#include "retarget/keypoints/body_view.hpp"
+#include "retarget/pose2d/body_view.hpp"
 
 #include <cmath>
 

@@ -1,4 +1,4 @@
-#include "retarget/keypoints/camera_fit.hpp"
+#include "retarget/pose2d/camera_fit.hpp"
 
 #include <Eigen/Dense>
 #include <cmath>
