@@ -190,7 +190,8 @@ Performance perform_sources(const ExportOptions& options, const ExportFormat& fo
     if (k == 0)
       for (const std::string& source : options.sources)
         roles.push_back(roles_in(options, source, retargeter.extractor()));
-    ExportInput input{{target.character, retargeter.performer().deformer(), target.file}, {}, {}};
+    ExportInput input{
+        {target.character, retargeter.performer().deformer(), target.file, options.poses}, {}, {}};
     input.name = clip_name(path);
     for (const auto& of_source : roles)
       for (size_t i = 0; i < of_source.size(); ++i)
@@ -230,7 +231,7 @@ std::unique_ptr<Studio> open_document(const ExportOptions& options) {
 }
 
 ExportChoice choice_of(const ExportOptions& options, const ExportFormat& format) {
-  ExportChoice choice{&format, options.file, {}, {}};
+  ExportChoice choice{&format, options.file, {}, {}, options.poses};
   if (options.target.rig != Rig::Auto && format.is_character)
     choice.own_bones = options.target.rig == Rig::Own;
   if (!options.bones.empty()) choice.own_bones = options.bones == "own";
@@ -339,7 +340,6 @@ int run_export(const ExportOptions& options) {
   for (const std::string& path : {options.preview, options.report}) check_writable(path);
   Performance done =
       options.document.empty() ? perform_sources(options, format) : perform_document(options, format);
-  for (ExportInput& one : done.performers) one.body.poses = options.poses;
   done.performers[0].body.file.progress = [](float) { check_interrupt("during the export"); };
   const auto began = std::chrono::steady_clock::now();
   const ExportCost cost = export_motion(options.out, format, done.performers);

@@ -136,6 +136,7 @@ class PosePictures final : public MotionOutput {
   void check_anybody() const;
   void write_pictures();
   void write_surfaces(const Filmed& frame, std::array<std::unique_ptr<PictureFilm>, 3>& films) const;
+  std::string pose_file() const;
   void write_pose_file() const;
   bool has_surface() const { return body_.character->target.mesh.faces.rows() > 0; }
   SurfaceView seen(const Points& vertices) const {
@@ -165,6 +166,7 @@ class PosePictures final : public MotionOutput {
 void PosePictures::check_choice() {
   US_CHECK(std::isfinite(choice_.rate) && (choice_.rate == 0 || (choice_.rate >= 1 && choice_.rate <= 1000)),
            path_, ": pictures come at 1 to 1000 a second, not ", choice_.rate);
+  check_not_read(pose_file(), {choice_.camera.reference});
   if (!choice_.camera.reference.empty()) reference_ = read_keypoints(choice_.camera.reference);
   if (choice_.canvas)
     canvas_ = *choice_.canvas;
@@ -284,9 +286,17 @@ void PosePictures::write_pictures() {
     if (film) film->finish();
 }
 
+/// Of the points; empty: none is wanted.
+std::string PosePictures::pose_file() const {
+  if (file_suffix(path_) == ".json") return path_;
+  const std::string stem = stem_of(path_).string();
+  if (choice_.file == PoseFile::None) return "";
+  return stem + (choice_.file == PoseFile::ControlNet ? ".json" : "_openpose");
+}
+
 void PosePictures::write_pose_file() const {
-  const bool is_alone = file_suffix(path_) == ".json";
-  if (choice_.file == PoseFile::None && !is_alone) return;
+  const std::string path = pose_file();
+  if (path.empty()) return;
   KeypointReading reading;
   reading.path = name_;
   reading.canvas = canvas_;
@@ -300,10 +310,10 @@ void PosePictures::write_pose_file() const {
     if (!is_nobody(seen_[t])) track.poses.push_back({number, 1, seen_[t]});
   }
   reading.tracks.push_back(std::move(track));
-  if (is_alone || choice_.file == PoseFile::ControlNet)
-    write_controlnet(is_alone ? path_ : stem_of(path_).string() + ".json", reading);
+  if (file_suffix(path) == ".json")
+    write_controlnet(path, reading);
   else
-    write_openpose_folder(stem_of(path_).string() + "_openpose", reading);
+    write_openpose_folder(path, reading);
 }
 
 ExportCost PosePictures::finish() {

@@ -1,14 +1,17 @@
 #include "retarget/pose2d/face_marks.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <vector>
 
 namespace understudy {
 namespace {
 
-constexpr size_t kFewest = 24;      // vertices that make a head
-constexpr float kFollows = 0.5f;    // of a vertex of the head
-constexpr float kUsualSpan = 1.3f;  // metres of legs and trunk that the usual marks belong to
+constexpr size_t kFewest = 24;    // vertices that make a head
+constexpr float kFollows = 0.5f;  // of a vertex of the head
+// a grown person's, metres, to whom the usual marks belong
+constexpr float kUsualSpan = 1.4f;   // of legs and trunk
+constexpr float kUsualNeck = 0.11f;  // from its joint to the head's
 
 /// The box about the head but for stray hairs: a hundredth of the vertices on each side counts as none.
 struct HeadBox {
@@ -49,13 +52,13 @@ Vec3 farthest_near(const std::vector<Vec3>& head, const HeadBox& box, const Vec3
 
 /// Sideways and up as wanted, as deep as the surface is there.
 Vec3 eye_at(const std::vector<Vec3>& head, const HeadBox& box, float side) {
-  const Vec3 place = box.at(0.5f + 0.21f * side, 0.5f, 0.85f);
+  const Vec3 place = box.at(0.5f + 0.2f * side, 0.46f, 0.85f);
   const Vec3 surface = farthest_near(head, box, place, Vec3(0.12f, 0.08f, 0), Vec3::UnitZ());
   return {place.x(), place.y(), surface.z()};
 }
 
 Vec3 ear_at(const std::vector<Vec3>& head, const HeadBox& box, float side) {
-  const Vec3 place = box.at(0.5f + 0.5f * side, 0.44f, 0.45f);
+  const Vec3 place = box.at(0.5f + 0.5f * side, 0.42f, 0.45f);
   const Vec3 surface = farthest_near(head, box, place, Vec3(0, 0.1f, 0.25f), side * Vec3::UnitX());
   return {surface.x(), place.y(), place.z()};
 }
@@ -64,9 +67,11 @@ Vec3 ear_at(const std::vector<Vec3>& head, const HeadBox& box, float side) {
 
 FaceMarks usual_face_marks(const Joints& rest) {
   const float trunk = (rest.row(Neck) - rest.row(Pelvis)).norm();
-  const float s = (leg_length(rest) + trunk) / kUsualSpan;
-  return {s * Vec3(0, 0.075f, 0.125f), s * Vec3(-0.032f, 0.105f, 0.1f), s * Vec3(0.032f, 0.105f, 0.1f),
-          s * Vec3(-0.075f, 0.085f, 0.01f), s * Vec3(0.075f, 0.085f, 0.01f)};
+  const float neck = (rest.row(Head) - rest.row(Neck)).norm();
+  // children's heads are larger than their legs, and their necks are, too
+  const float s = std::sqrt((leg_length(rest) + trunk) / kUsualSpan * std::max(neck, 0.03f) / kUsualNeck);
+  return {s * Vec3(0, -0.009f, 0.115f), s * Vec3(-0.034f, 0.035f, 0.094f), s * Vec3(0.034f, 0.035f, 0.094f),
+          s * Vec3(-0.087f, 0.025f, -0.009f), s * Vec3(0.087f, 0.025f, -0.009f)};
 }
 
 FaceMarks face_marks(const Joints& rest, const Points& vertices,
@@ -79,7 +84,7 @@ FaceMarks face_marks(const Joints& rest, const Points& vertices,
   const HeadBox box = box_of_head(head);
   if (!(box.size().minCoeff() > 1e-4f)) return usual_face_marks(rest);
   FaceMarks marks;
-  marks.nose = farthest_near(head, box, box.at(0.5f, 0.4f, 1), Vec3(0.17f, 0.17f, 0), Vec3::UnitZ());
+  marks.nose = farthest_near(head, box, box.at(0.5f, 0.35f, 1), Vec3(0.15f, 0.17f, 0), Vec3::UnitZ());
   marks.nose.x() = box.at(0.5f, 0, 0).x();
   marks.right_eye = eye_at(head, box, -1), marks.left_eye = eye_at(head, box, 1);
   marks.right_ear = ear_at(head, box, -1), marks.left_ear = ear_at(head, box, 1);

@@ -12,12 +12,12 @@ struct FaceMarks {
 };
 
 /// Of a body of these T-pose joints of which nothing else is known: where a grown person has them, scaled
-/// with legs and trunk.
+/// with legs, trunk and neck.
 FaceMarks usual_face_marks(const Joints& rest);
 
 /// Found on a head's surface. vertices [V, 3] in T-pose, of_head [V]: how much each follows the head, 0..1.
-/// The nose is the most forward point of the face's middle third, the eyes are half-way up, the ears at the
-/// widest place between both. Where fewer than 24 vertices follow the head, or they have no size, the usual
+/// The nose is the most forward point of the face's middle, the eyes are nearly half-way up, the ears
+/// at the widest place there. Where fewer than 24 vertices follow the head, or they have no size, the usual
 /// ones.
 FaceMarks face_marks(const Joints& rest, const Points& vertices,
                      const Eigen::Ref<const Eigen::VectorXf>& of_head);

@@ -96,6 +96,7 @@ TEST(PosePictures, ByDefaultHoldTheWholeTakeFromTheFront) {
   for (size_t t = 0; t < input.clips[0].poses.size(); ++t)
     input.clips[0].poses[t].root.x() += 0.2f * static_cast<float>(t);
   input.body.poses.file = PoseFile::OpenPose;
+  input.body.poses.hides_face = false;
   film(folder.path("control"), input);
   const KeypointReading read = filmed_poses(folder.path("control_openpose"));
   float left = 1e9f, right = 0;
@@ -198,6 +199,10 @@ TEST(PosePictures, RefuseWhatCannotBeInASentence) {
       contains(refused([](PoseChoice& c) { c.camera.distance_m = 2, c.camera.target = Vec3(50, 0, 0); }),
                "nobody is in the camera's view"));
   EXPECT_TRUE(contains(refused([](PoseChoice& c) { c.camera.reference = "none.json"; }), "none.json"));
+  export_motion(folder.path("control.json"), export_format("pose_list", ""), {input});
+  EXPECT_TRUE(contains(refused([&](PoseChoice& c) { c.camera.reference = folder.path("control.json"); }),
+                       "would be lost"));
+  fs::remove(folder.path("control.json"));
   EXPECT_FALSE(fs::exists(folder.path("control")));
   EXPECT_FALSE(fs::exists(folder.path("control.json")));
   folder.write("mine/note.txt", "keep me");

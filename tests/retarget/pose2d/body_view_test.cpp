@@ -47,7 +47,7 @@ TEST(FaceMarks, AreOnTheFaceOfAnyPerson) {
       EXPECT_NEAR(face.nose.x(), 0, 0.003f * s);
       EXPECT_GT(face.nose.z(), face.left_eye.z());
       EXPECT_GT(face.left_eye.y(), face.nose.y());
-      EXPECT_LT(face.left_eye.y() - face.nose.y(), 0.04f * s);
+      EXPECT_LT(face.left_eye.y() - face.nose.y(), 0.045f * s);
       EXPECT_GT(face.left_eye.x(), 0.01f * s);
       EXPECT_GT(face.left_ear.x(), face.left_eye.x());
       EXPECT_LT(face.left_ear.z(), face.left_eye.z());
