@@ -14,6 +14,28 @@ namespace understudy::app {
 namespace fs = std::filesystem;
 namespace {
 
+/// Whether it is one of pose pictures.
+bool set_pose_option(PoseChoice& poses, const std::string& key, const std::string& value) {
+  const ArgumentReader words({value});
+  if (key == "camera")
+    poses.camera = picture_camera(value);
+  else if (key == "canvas")
+    poses.canvas = parse_canvas(value);
+  else if (key == "rate")
+    poses.rate = words.number<double>(0, key.c_str());
+  else if (key == "count")
+    poses.count = picture_count(value);
+  else if (key == "depth")
+    poses.depth = words.on(0);
+  else if (key == "normals")
+    poses.normals = words.on(0);
+  else if (key == "mask")
+    poses.mask = words.on(0);
+  else
+    return false;
+  return true;
+}
+
 void set_option(ExportChoice& out, const std::string& key, const std::string& value) {
   const ArgumentReader words({value});
   const auto in_range = [&](float high) {
@@ -39,7 +61,7 @@ void set_option(ExportChoice& out, const std::string& key, const std::string& va
     out.file.keep_clips = words.on(0);
   else if (key == "take")
     out.takes.push_back(value);
-  else
+  else if (!set_pose_option(out.poses, key, value))
     throw Error("there is no export option '" + key + "'");
 }
 
@@ -96,7 +118,7 @@ ExportInput input_of(const Session& session, const std::vector<size_t>& takes, c
     add_clip(out, session, k, takes.size() > 1 ? name : clip_name(session, take));
     rights.push_back(session.takes[k].rights);
   }
-  out.body = {state.character, state.deformer, choice.file};
+  out.body = {state.character, state.deformer, choice.file, choice.poses};
   out.body.file.rights = joined_once(rights, "; ");
   const bool own = on_their_rig(take.target, *state.character);
   US_CHECK(own || !choice.own_bones.value_or(false), take.name, ": does not perform on bones of its own");
