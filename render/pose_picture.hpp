@@ -30,8 +30,8 @@ float usual_half_width(const Canvas& canvas);
 int wide_stick_factor(const Canvas& canvas);
 
 /// Sticks at 0.6 of their colour, above them discs at full colour; every pixel has one of these colours, no
-/// edge is soft. What is missing is left out, a stick with either of its ends. Hands are lines of all hues with
-/// blue dots, the face is white dots.
+/// edge is soft. What is missing is left out, a stick with either of its ends. Hands are lines of all hues
+/// with blue dots, the face is white dots.
 void draw_pose(Image& image, const FlatPose& pose, const PosePictureOptions& options = {});
 /// All people of a frame on black. Throws Error where Image does.
 Image pose_picture(const std::vector<FlatPose>& people, const Canvas& canvas,

@@ -24,8 +24,8 @@ struct PictureCamera {
 /// reference. Throws Error, a sentence that names what is wrong, or the file.
 PictureCamera picture_camera(const std::string& words);
 
-/// Sees all points (of all frames, in the world) where the camera leaves it open. front: radians about +y, where
-/// who is filmed faces first. Pixels as files of 2D poses count them.
+/// Sees all points (of all frames, in the world) where the camera leaves it open. front: radians about +y,
+/// where who is filmed faces first. Pixels as files of 2D poses count them.
 Pinhole film_camera(const PictureCamera& camera, const Points& points, float front, const Canvas& canvas);
 
 /// A size that generators of pictures and films take.

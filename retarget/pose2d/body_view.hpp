@@ -14,8 +14,8 @@ using BodyPlaces = Eigen::Matrix<float, kBodyPoints, 3, Eigen::RowMajor>;
 /// The joint that each point of BODY_25 moves with.
 extern const std::array<int, kBodyPoints> kJointOfPoint;
 
-/// Toes and heel of both feet, in the order of BODY_25's from the left big toe: from the foot's joint, that of
-/// a heel from the ankle's, in that joint's frame, metres.
+/// Toes and heel of both feet, in the order of BODY_25's from the left big toe: from the foot's joint, that
+/// of a heel from the ankle's, in that joint's frame, metres.
 using FootMarks = std::array<Vec3, 6>;
 /// Of a body of these T-pose joints, from the lengths of its feet.
 FootMarks foot_marks(const Joints& rest);

@@ -17,10 +17,10 @@ struct CameraFit {
   float error = 0;  ///< root of the mean squared distance of the points that count, pixels
 };
 
-/// Least squares over the yaw, the distance (orthographic: the focal length) and the shift across the view, of
-/// the first 15 points of BODY_25 that the reference has, weighed by their confidence: Gauss-Newton from twelve
-/// headings, with steps that are taken back where they do not help. Throws Error when fewer than four of the
-/// points are there.
+/// Least squares over the yaw, the distance (orthographic: the focal length) and the shift across the view,
+/// of the first 15 points of BODY_25 that the reference has, weighed by their confidence: Gauss-Newton from
+/// twelve headings, with steps that are taken back where they do not help. Throws Error when fewer than four
+/// of the points are there.
 CameraFit fit_camera(const BodyPlaces& places, const FlatPose& reference, const CameraFitOptions& options);
 
 }  // namespace understudy

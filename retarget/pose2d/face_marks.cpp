@@ -33,8 +33,8 @@ HeadBox box_of_head(const std::vector<Vec3>& head) {
   return box;
 }
 
-/// The vertex that is farthest in a direction among those within `reach` of the box's size (0: any) of a place
-/// in the box; the place itself where there is none.
+/// The vertex that is farthest in a direction among those within `reach` of the box's size (0: any) of a
+/// place in the box; the place itself where there is none.
 Vec3 farthest_near(const std::vector<Vec3>& head, const HeadBox& box, const Vec3& place, const Vec3& reach,
                    const Vec3& direction) {
   Vec3 best = place;

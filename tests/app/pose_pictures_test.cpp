@@ -41,8 +41,8 @@ KeypointReading filmed_poses(const std::string& path) {
   return read_keypoints(path);
 }
 
-/// Where a camera at `eye` that looks at `target` sees a point, with a vertical lens and the picture's axis in
-/// the middle; written anew, in doubles, by the textbook (Hartley and Zisserman, 2004, section 6.1).
+/// Where a camera at `eye` that looks at `target` sees a point, with a vertical lens and the picture's axis
+/// in the middle; written anew, in doubles, by the textbook (Hartley and Zisserman, 2004, section 6.1).
 Eigen::Vector2d seen_by_the_book(const Eigen::Vector3d& eye, const Eigen::Vector3d& target, double fov_deg,
                                  const Canvas& canvas, const Eigen::Vector3d& point) {
   const Eigen::Vector3d ahead = (target - eye).normalized();
