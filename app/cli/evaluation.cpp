@@ -4,6 +4,7 @@
 #include <chrono>
 #include <map>
 
+#include "app/cli/flat_evaluation.hpp"
 #include "app/cli/gap_evaluation.hpp"
 #include "app/cli/style_evaluation.hpp"
 #include "app/run/case_source.hpp"
@@ -199,6 +200,12 @@ struct Bench {
   std::shared_ptr<MotionSpace> space = {};      // made for the first case with gaps
   std::unique_ptr<StyleEvaluation> style = {};  // made for the first case of the suite style
 
+  std::unique_ptr<FlatEvaluation> flat = {};  // made for the first case of 2D poses
+
+  FlatEvaluation& flat_poses() {
+    if (!flat) flat = std::make_unique<FlatEvaluation>(options);
+    return *flat;
+  }
   StyleEvaluation& styles() {
     if (!style) style = std::make_unique<StyleEvaluation>(options);
     return *style;
@@ -371,6 +378,10 @@ void evaluate_case(Bench& bench, const std::string& folder, const Case& c, CaseR
                    Breakdown& breakdown) {
   const EvalOptions& options = bench.options;
   if (c.style) return bench.styles().evaluate(c, result);
+  if (c.flat) {
+    bench.flat_poses().evaluate(c, result);
+    return breakdown.add_kind(c.tags.size() > 1 ? c.tags[1] : c.name, result.metrics);
+  }
   check_options(options, c);
   if (c.gaps) return evaluate_gap_case(bench, c, result);
   std::optional<Truth> truth;

@@ -1,6 +1,7 @@
 #include <CLI/CLI.hpp>
 
 #include "app/cli/commands.hpp"
+#include "app/cli/flat_job.hpp"
 #include "app/cli/job.hpp"
 #include "app/cli/options.hpp"
 #include "app/run/exports.hpp"
@@ -12,11 +13,13 @@ namespace understudy::app {
 
 Action declare_retarget(CLI::App& command) {
   const auto job = std::make_shared<JobOptions>();
+  const auto flat = std::make_shared<FlatOptions>();
   command
-      .add_option("--source", job->source.path,
-                  "scans: a folder of frames (" + format_names(kScanFrame) +
-                      "), a list or an array; a skeletal motion: " + format_names(kMotion) +
-                      "; or an SMPL-format body (--motion)")
+      .add_option(
+          "--source", job->source.path,
+          "scans: a folder of frames (" + format_names(kScanFrame) +
+              "), a list or an array; a skeletal motion: " + format_names(kMotion) +
+              "; or an SMPL-format body (--motion); or 2D poses: a folder of JSONs, a JSON, .npy, .npz")
       ->required();
   add_source_options(command, job->source);
   command
@@ -33,14 +36,17 @@ Action declare_retarget(CLI::App& command) {
   for (const ExportFormat& info : export_formats()) append_item(formats, info.name);
   command.add_option("--format", job->format, formats + " (default: by the suffix)");
   add_pose_options(command, job->poses);
+  add_flat_options(command, *flat);
   command.add_option("--report", job->report, "report as JSON");
   command.add_option("--preview", job->preview, "contact sheet as PNG");
   command.add_option("--skeletons", job->skeletons,
                      "PNG of up to 60 frames with the extracted skeleton in each");
-  return [job] {
+  return [job, flat] {
     if (job->out.empty() && job->report.empty() && job->preview.empty() && job->skeletons.empty())
-      job->out = "out.glb";
-    if (job->source.person == "all")
+      job->out = is_flat_job(*job) ? "out.json" : "out.glb";
+    if (is_flat_job(*job))
+      run_flat_job(*job, *flat);
+    else if (job->source.person == "all")
       run_jobs_of_all(*job);
     else
       run_job(*job);

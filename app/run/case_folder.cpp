@@ -136,6 +136,25 @@ std::optional<GapPlan> gaps_of(const nlohmann::json& json, const std::string& so
   return plan;
 }
 
+std::optional<FlatCase> flat_of(const nlohmann::json& json, const std::string& path) {
+  if (!json.contains("flat")) return std::nullopt;
+  FlatCase flat;
+  for (const auto& [key, lengths] : {std::pair{"source_lengths", &flat.source_lengths},
+                                     std::pair{"target_lengths", &flat.target_lengths}}) {
+    const auto& json_flat = json["flat"];
+    US_CHECK(json_flat.is_object() && json_flat.contains(key) && json_flat[key].is_array() &&
+                 json_flat[key].size() == kFlatBoneCount,
+             path, ": \"", key, "\" is no list of ", kFlatBoneCount, " lengths");
+    for (int b = 0; b < kFlatBoneCount; ++b) {
+      const auto& length = json_flat[key][static_cast<size_t>(b)];
+      US_CHECK(length.is_number() && length.get<float>() > 0, path, ": \"", key,
+               "\" has a length that is not above 0");
+      (*lengths)[b] = length.get<float>();
+    }
+  }
+  return flat;
+}
+
 std::optional<StyleCase> style_of(const nlohmann::json& json, const std::string& path) {
   if (!json.contains("style")) return std::nullopt;
   const auto& style = json["style"];
@@ -197,6 +216,7 @@ Case read_case(const std::string& folder) {
   }
   result.truth = text("truth");
   result.style = style_of(json, path);
+  result.flat = flat_of(json, path);
   if (json.contains("fps")) {
     US_CHECK(json["fps"].is_number() && json["fps"].get<double>() > 0, path,
              ": \"fps\" is not a positive number");

@@ -7,6 +7,7 @@
 
 #include "app/run/gap_plan.hpp"
 #include "retarget/geometry/mesh.hpp"
+#include "retarget/keypoints/proportions.hpp"
 #include "retarget/metrics/hand_contact.hpp"
 #include "retarget/metrics/rig_truth.hpp"
 #include "retarget/metrics/scene_score.hpp"
@@ -22,6 +23,11 @@ struct StyleCase {
   bool real() const { return is == wanted; }  ///< nothing is to be done: it is what others are compared with
 };
 
+/// What is true of 2D poses: source, target and truth are files of them.
+struct FlatCase {
+  BoneLengths source_lengths, target_lengths;  ///< pixels
+};
+
 struct Case {
   std::string name;
   double fps = 30;
@@ -34,6 +40,7 @@ struct Case {
   std::vector<std::string> tags;
   std::optional<GapPlan> gaps = {};     ///< frames are to be made: these alone are evaluated
   std::optional<StyleCase> style = {};  ///< how it is performed is evaluated, on its own bones
+  std::optional<FlatCase> flat = {};    ///< 2D poses are performed by another person
   /// Of two bodies of a kind, the second of which shall perform what the first did (`target` are its scans
   /// then): paths of its own truth, and of what it does under the first one's true angles; empty: none.
   std::string target_truth = {}, performed_truth = {};

@@ -11,6 +11,7 @@
 #include "app/run/capture_suites.hpp"
 #include "app/run/case_writer.hpp"
 #include "app/run/creature_suites.hpp"
+#include "app/run/flat_suite.hpp"
 #include "app/run/inbetween_suite.hpp"
 #include "app/run/interrupt.hpp"
 #include "app/run/report.hpp"
@@ -390,6 +391,7 @@ std::vector<EvaluatedMotion> motions_of(const DataSplit& split) {
 int make_suite(const SuiteOptions& options, const std::function<void(const std::string&)>& done) {
   if (is_creature_suite(options.suite) && options.data.empty()) return make_creature_suite(options, {}, done);
   if (options.suite == "style") return make_style_suite(options, done);
+  if (is_flat_suite(options.suite)) return make_flat_suite(options, done);
   DataSplit split = read_split(options.data, options.split);
   if (options.suite == "inbetween" || options.suite == "predict")
     return make_inbetween_suite(options, split, done);

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "app/run/interrupt.hpp"
+#include "app/run/pose_pictures.hpp"
 #include "app/run/report.hpp"
 #include "retarget/base/error.hpp"
 #include "retarget/base/file.hpp"
@@ -161,8 +162,7 @@ FlatTarget open_flat_target(const FlatSourceOptions& options, const LengthReader
   return target;
 }
 
-FlatPerformance perform_flat(const FlatOptions& options, const LengthReader& lengths,
-                             const std::function<void(float)>& progress) {
+FlatPerformance perform_flat(const FlatOptions& options, const LengthReader& lengths) {
   FlatPerformance made;
   made.source = open_keypoints(options.source);
   made.told = made.source.told;
@@ -189,24 +189,21 @@ FlatPerformance perform_flat(const FlatOptions& options, const LengthReader& len
     made.result.frames[frame].problem = clean[frame].problem;
     made.flagged += clean[frame].is_usable ? 0 : 1;
     if (!is_nobody(out.pose)) made.result.tracks[0].poses.push_back(std::move(out));
-    if (progress) progress(static_cast<float>(frame + 1) / static_cast<float>(clean.size()));
   }
   if (!options.ahead) made.source_lengths = known_by_now(estimate);
   return made;
 }
 
-void write_flat(const std::string& path, const KeypointReading& reading) {
+void write_flat(const std::string& path, const KeypointReading& reading, const PoseChoice& choice) {
   const std::string suffix = file_suffix(path);
-  if (suffix == ".json")
-    write_controlnet(path, reading);
-  else if (suffix == ".csv")
+  if (suffix == ".csv")
     write_keypoint_csv(path, reading);
   else if (suffix == ".npz")
     write_keypoint_npz(path, reading);
-  else if (suffix.empty())
-    write_openpose_folder(path, reading);
+  else if (suffix.empty() || suffix == ".mp4" || suffix == ".json")
+    write_pose_pictures(path, reading, choice);
   else
-    throw Error(path + ": 2D poses are written as a folder, .json, .csv or .npz");
+    throw Error(path + ": 2D poses are written as .json, .csv, .npz, or pictures: .mp4 or a folder");
 }
 
 }  // namespace understudy::app

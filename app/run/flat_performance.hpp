@@ -1,11 +1,11 @@
 // A file of 2D poses performed by a person of other proportions, in a picture.
 #pragma once
 
-#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
 
+#include "app/run/pose_choice.hpp"
 #include "retarget/keypoints/keypoint_reader.hpp"
 #include "retarget/pose2d/flat_retargeter.hpp"
 
@@ -52,11 +52,10 @@ struct FlatPerformance {
 };
 
 /// All frames, online. Throws Error.
-FlatPerformance perform_flat(const FlatOptions& options, const LengthReader& lengths,
-                             const std::function<void(float)>& progress);
+FlatPerformance perform_flat(const FlatOptions& options, const LengthReader& lengths);
 
-/// By the suffix: a folder without one gets a file a frame, .json is one list, .csv, .npz. Throws Error naming
-/// the path.
-void write_flat(const std::string& path, const KeypointReading& reading);
+/// By the suffix: .json, .csv, .npz hold the poses; .mp4 or a folder pictures of them, see
+/// write_pose_pictures. Throws Error naming the path.
+void write_flat(const std::string& path, const KeypointReading& reading, const PoseChoice& choice);
 
 }  // namespace understudy::app

@@ -68,6 +68,22 @@ std::string beside(const std::string& path, const std::string& what) {
   return stem_of(path).string() + what + (is_picture_folder(path) ? "" : file_suffix(path));
 }
 
+/// Where the points are written beside pictures; empty: none are wanted.
+std::string pose_file_of(const std::string& path, PoseFile file) {
+  if (file_suffix(path) == ".json") return path;
+  if (file == PoseFile::None) return "";
+  return stem_of(path).string() + (file == PoseFile::ControlNet ? ".json" : "_openpose");
+}
+
+void write_poses_beside(const std::string& pictures, const KeypointReading& reading, PoseFile file) {
+  const std::string path = pose_file_of(pictures, file);
+  if (path.empty()) return;
+  if (file_suffix(path) == ".json")
+    write_controlnet(path, reading);
+  else
+    write_openpose_folder(path, reading);
+}
+
 /// The poses at other moments than those of their frames.
 std::vector<Pose> poses_at_rate(const std::vector<Pose>& poses, double fps, const PoseChoice& choice) {
   const double rate = choice.rate > 0 ? choice.rate : fps;
@@ -136,7 +152,6 @@ class PosePictures final : public MotionOutput {
   void check_anybody() const;
   void write_pictures();
   void write_surfaces(const Filmed& frame, std::array<std::unique_ptr<PictureFilm>, 3>& films) const;
-  std::string pose_file() const;
   void write_pose_file() const;
   bool has_surface() const { return body_.character->target.mesh.faces.rows() > 0; }
   SurfaceView seen(const Points& vertices) const {
@@ -166,7 +181,7 @@ class PosePictures final : public MotionOutput {
 void PosePictures::check_choice() {
   US_CHECK(std::isfinite(choice_.rate) && (choice_.rate == 0 || (choice_.rate >= 1 && choice_.rate <= 1000)),
            path_, ": pictures come at 1 to 1000 a second, not ", choice_.rate);
-  check_not_read(pose_file(), {choice_.camera.reference});
+  check_not_read(pose_file_of(path_, choice_.file), {choice_.camera.reference});
   if (!choice_.camera.reference.empty()) reference_ = read_keypoints(choice_.camera.reference);
   if (choice_.canvas)
     canvas_ = *choice_.canvas;
@@ -286,17 +301,7 @@ void PosePictures::write_pictures() {
     if (film) film->finish();
 }
 
-/// Of the points; empty: none is wanted.
-std::string PosePictures::pose_file() const {
-  if (file_suffix(path_) == ".json") return path_;
-  const std::string stem = stem_of(path_).string();
-  if (choice_.file == PoseFile::None) return "";
-  return stem + (choice_.file == PoseFile::ControlNet ? ".json" : "_openpose");
-}
-
 void PosePictures::write_pose_file() const {
-  const std::string path = pose_file();
-  if (path.empty()) return;
   KeypointReading reading;
   reading.path = name_;
   reading.canvas = canvas_;
@@ -310,10 +315,7 @@ void PosePictures::write_pose_file() const {
     if (!is_nobody(seen_[t])) track.poses.push_back({number, 1, seen_[t]});
   }
   reading.tracks.push_back(std::move(track));
-  if (file_suffix(path) == ".json")
-    write_controlnet(path, reading);
-  else
-    write_openpose_folder(path, reading);
+  write_poses_beside(path_, reading, choice_.file);
 }
 
 ExportCost PosePictures::finish() {
@@ -332,6 +334,20 @@ ExportCost PosePictures::finish() {
 }
 
 }  // namespace
+
+void write_pose_pictures(const std::string& path, const KeypointReading& reading, const PoseChoice& choice) {
+  if (file_suffix(path) != ".json") {
+    PictureFilm film(path, reading.canvas, reading.fps);
+    for (int64_t frame = 0; frame < static_cast<int64_t>(reading.frames.size()); ++frame) {
+      std::vector<FlatPose> people;
+      for (const KeypointTrack& track : reading.tracks)
+        if (const FlatPose* pose = track.at(frame)) people.push_back(*pose);
+      film.push(render::pose_picture(people, reading.canvas, choice.drawing));
+    }
+    film.finish();
+  }
+  write_poses_beside(path, reading, choice.file);
+}
 
 bool is_picture_folder(const std::string& path) {
   const std::string suffix = file_suffix(path);

@@ -5,6 +5,8 @@
 #include <string>
 
 #include "app/run/exports.hpp"
+#include "app/run/pose_choice.hpp"
+#include "retarget/keypoints/keypoint_track.hpp"
 #include "retarget/pose2d/body_view.hpp"
 
 namespace understudy::app {
@@ -17,6 +19,9 @@ namespace understudy::app {
 /// in view.
 std::unique_ptr<MotionOutput> open_pose_pictures(const std::string& path, const ExportBody& body,
                                                  const std::string& name, double fps);
+
+/// Of poses that are flat already: the same files, on the reading's canvas at its rate. Throws Error.
+void write_pose_pictures(const std::string& path, const KeypointReading& reading, const PoseChoice& choice);
 
 /// Whether such a path is a folder.
 bool is_picture_folder(const std::string& path);

@@ -1,0 +1,28 @@
+// How well 2D poses are performed on cases of the suites pose2d, pose2d-odd, pose2d-noisy and pose2d-seen.
+#pragma once
+
+#include <memory>
+
+#include "app/cli/evaluation.hpp"
+#include "app/run/case_folder.hpp"
+#include "retarget/pipeline/keypoint_transfer.hpp"
+
+namespace understudy::app {
+
+/// Of the engine, hands let go: oks (keypoint_similarity), nmpjpe2d, violation, angles_rad, jitter (mean
+/// second difference over the truth's); of points that the source shows. With hands that keep touching:
+/// oks_touches, violation_touches, near_kept; near_truth is what the truth keeps. bone_ratio of the target's
+/// lengths. Beside it oks of what others do: oks_copy, oks_scale (one scale over the track, least squares of
+/// lengths), oks_one (each bone's ratio in the first frames), oks_longest (in the longest of the tracks),
+/// oks_true (the true ratios: the limit).
+class FlatEvaluation {
+ public:
+  /// Throws Error where the network cannot be loaded.
+  explicit FlatEvaluation(const EvalOptions& options);
+  void evaluate(const Case& c, CaseResult& result) const;
+
+ private:
+  std::unique_ptr<LengthReader> lengths_;
+};
+
+}  // namespace understudy::app

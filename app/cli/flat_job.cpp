@@ -1,0 +1,92 @@
+#include "app/cli/flat_job.hpp"
+
+#include <CLI/CLI.hpp>
+
+#include "app/run/exports.hpp"
+#include "app/run/report.hpp"
+#include "retarget/base/error.hpp"
+#include "retarget/base/log.hpp"
+#include "retarget/base/text.hpp"
+#include "retarget/networks/networks.hpp"
+
+namespace understudy::app {
+namespace {
+
+Json lengths_json(const Proportions& lengths) {
+  Json json;
+  for (size_t b = 0; b < kFlatBones.size(); ++b) {
+    const auto at = static_cast<Eigen::Index>(b);
+    json[kFlatBones[b].name] = {{"length", lengths.length[at]}, {"doubt", lengths.doubt[at]}};
+  }
+  return json;
+}
+
+void write_flat_report(const std::string& path, const FlatPerformance& made, const std::string& weights) {
+  Json json = report_header(weights);
+  json["source"] = {{"path", made.source.path},
+                    {"format", made.source.format},
+                    {"layout", made.source.layout},
+                    {"frames", made.source.frames.size()},
+                    {"people", made.source.tracks.size()},
+                    {"fps", made.source.fps}};
+  json["told"] = made.told;
+  json["flagged"] = made.flagged;
+  json["source_lengths"] = lengths_json(made.source_lengths);
+  json["target_lengths"] = lengths_json(made.target_lengths);
+  Json problems = Json::array();
+  for (const KeypointFrame& frame : made.result.frames)
+    if (!frame.problem.empty()) problems.push_back({{"frame", frame.number}, {"problem", frame.problem}});
+  json["problems"] = problems;
+  write_json(path, json);
+}
+
+}  // namespace
+
+void add_flat_options(CLI::App& command, FlatOptions& flat) {
+  command.add_option_function<std::string>(
+      "--target-canvas", [&flat](const std::string& text) { flat.target.canvas = parse_canvas(text); },
+      "of a target that is 2D poses: its picture's size (default: as the file or a picture beside it tells)");
+  command.add_option("--layout", flat.source.layout,
+                     "of 2D poses: the order of the points (default: as names or their count tell)");
+  command.add_option("--target-person", flat.target.person,
+                     "who of several people in a target that is 2D poses (default: who is seen longest)");
+  command
+      .add_option_function<std::string>(
+          "--place",
+          [&flat](const std::string& word) {
+            flat.place = word == kFlatPlaceNames[1] ? FlatPlace::Source : FlatPlace::Reference;
+          },
+          "of 2D poses: reference, starts where the target stands in its picture (default), or source")
+      ->check(CLI::IsMember({kFlatPlaceNames[0], kFlatPlaceNames[1]}));
+  command.add_flag_callback(
+      "--let-go", [&flat] { flat.touches = false; }, "of 2D poses: hands need not touch what they touched");
+  command.add_flag_callback(
+      "--no-look-ahead", [&flat] { flat.ahead = false; },
+      "of 2D poses: the source's proportions are learned as its frames come");
+}
+
+bool is_flat_job(const JobOptions& job) {
+  return job.source.motion.empty() && !job.source.blend && looks_like_keypoints(job.source.path);
+}
+
+void run_flat_job(const JobOptions& job, FlatOptions flat) {
+  flat.source.path = job.source.path;
+  flat.source.fps = job.source.fps;
+  if (job.poses.canvas) flat.source.canvas = *job.poses.canvas;
+  flat.source.person = job.source.person;
+  flat.target.path = job.target.path;
+  US_CHECK(is_proportions_file(flat.target.path) || looks_like_keypoints(flat.target.path), flat.target.path,
+           ": 2D poses are performed by a person in a picture: 2D poses, too, or proportions");
+  check_not_read(job.out, {flat.source.path, flat.target.path});
+  US_CHECK(job.preview.empty() && job.skeletons.empty(),
+           "2D poses have no --preview and no --skeletons: --out writes them");
+  const auto network = nn::load_length_reader(nn::weights_folder(network_options(job.how)));
+  const FlatPerformance made = perform_flat(flat, *network);
+  for (const std::string& sentence : made.told) log::info(sentence);
+  if (made.flagged > 0)
+    log::warn(grouped(made.flagged) + " frames could not be used and repeat the pose before");
+  if (!job.out.empty()) write_flat(job.out, made.result, job.poses);
+  if (!job.report.empty()) write_flat_report(job.report, made, nn::weights_folder(network_options(job.how)));
+}
+
+}  // namespace understudy::app

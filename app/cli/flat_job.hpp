@@ -1,0 +1,19 @@
+// One job of 2D poses: a track onto a person in a picture, into files.
+#pragma once
+
+#include "app/cli/job.hpp"
+#include "app/run/flat_performance.hpp"
+
+namespace understudy::app {
+
+/// Options of 2D poses that retarget has beside those of JobOptions.
+void add_flat_options(CLI::App& command, FlatOptions& flat);
+
+/// Whether the job's source is 2D poses.
+bool is_flat_job(const JobOptions& job);
+
+/// Does it. Paths, the person, --fps and --weights are those of `job`. Throws Error; also where the job wants
+/// what 2D poses do not have.
+void run_flat_job(const JobOptions& job, FlatOptions flat);
+
+}  // namespace understudy::app
