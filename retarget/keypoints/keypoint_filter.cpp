@@ -7,13 +7,15 @@
 #include "retarget/base/text.hpp"
 #include "retarget/keypoints/exchanged_sides.hpp"
 #include "retarget/keypoints/point_filter.hpp"
+#include "retarget/keypoints/track_jitter.hpp"
 
 namespace understudy {
 namespace {
 
-constexpr int kFewestPoints = 3;       // fewer are no pose
-constexpr int kOutliersBelieved = 3;   // frames in a row: then the point did jump
-constexpr float kSizeMemory = 1;       // seconds
+constexpr int kFewestPoints = 3;      // fewer are no pose
+constexpr int kOutliersBelieved = 3;  // frames in a row: then the point did jump
+constexpr float kSizeMemory = 1;      // seconds
+constexpr float kUnknownJitter = 0.5f, kLeastJitter = 0.1f, kMostJitter = 2;  // of kSightingError
 constexpr double kLongestStep = 3600;  // seconds: longer is as good as that
 
 /// Where a hand or the face starts among all points of a person.
@@ -24,6 +26,7 @@ constexpr int kLeftHandAt = kBodyPoints, kRightHandAt = kLeftHandAt + kHandPoint
 
 struct KeypointFilter::State {
   std::array<PointFilter, kAllPoints> points;
+  TrackJitter jitter;
   ExchangedSides sides;
   FlatPose last;
   float size = 0;      // pixels
@@ -31,7 +34,10 @@ struct KeypointFilter::State {
   bool has_last = false;
 
   PointFilter::Noise noise(const KeypointFilterOptions& options) const {
-    return {std::max(size, 1.0f), options.smoothing, options.gap_s};
+    const float all = std::max(size, 1.0f), seen = jitter.pixels() / (PointFilter::kSightingError * all);
+    return {all,
+            options.smoothing * (seen < 0 ? kUnknownJitter : std::clamp(seen, kLeastJitter, kMostJitter)),
+            options.gap_s};
   }
   FlatPose expected(float dt) const {
     FlatPose pose;
@@ -50,6 +56,7 @@ struct KeypointFilter::State {
   void forget_points() {
     for (PointFilter& point : points) point.reset();
     sides.reset();
+    jitter.restart();
   }
   /// A cut, or another place at once: most of what is seen both times is far off.
   bool has_jumped(const FlatPose& seen, float dt, const PointFilter::Noise& noise) const {
@@ -137,6 +144,7 @@ CleanPose KeypointFilter::push(const FlatPose* seen, double dt, const std::strin
   state.waiting = 0;
   if (step > std::max(options_.gap_s, 2 * static_cast<float>(dt))) state.forget_points();
   state.update_size(*seen, step);
+  state.jitter.push(*seen, step);
   const PointFilter::Noise noise = state.noise(options_);
   out.pose = *seen;
   if (options_.mend_sides && state.has_last) {

@@ -12,6 +12,8 @@ namespace understudy {
 /// where the point rests, quick where it moves.
 class PointFilter {
  public:
+  /// Error of a sighting, of a person's size, where smoothing is 1.
+  static constexpr float kSightingError = 0.008f;
   /// Lengths in pixels; size: of the whole person.
   struct Noise {
     float size = 1;
