@@ -26,6 +26,7 @@ constexpr Subcommand kSubcommands[] = {
     {"discover", "finds the bones of anything that moves in its scans", declare_discover},
     {"fill", "makes the frames of a motion that were not captured, or not well", declare_fill},
     {"style", "lets somebody move in another style, on their own bones", declare_style},
+    {"sheet", "shows several performances below each other, a moment a column", declare_sheet},
     {"blend", "makes what lies between two to four motions", declare_blend},
     {"map", "shows the steps of many motions by their likeness, and finds those like a given one",
      declare_map},

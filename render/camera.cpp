@@ -17,14 +17,17 @@ Eigen::Vector2f half_extent(const Camera& camera, float aspect) {
 
 }  // namespace
 
+Pinhole pinhole(const Camera& camera, PixelSize size) {
+  Pinhole out = looking_at(camera.target, axes(camera), camera.distance);
+  out.focal = static_cast<float>(size.height) / 2 / half_extent(camera, 1).y();
+  if (camera.orthographic) out.focal /= camera.distance;
+  out.centre = {static_cast<float>(size.width) / 2, static_cast<float>(size.height) / 2};
+  out.orthographic = camera.orthographic;
+  return out;
+}
+
 Mat3 axes(const Camera& camera) {
-  const float cy = std::cos(camera.yaw), sy = std::sin(camera.yaw);
-  const float cp = std::cos(camera.pitch), sp = std::sin(camera.pitch);
-  const Vec3 back(sy * cp, sp, cy * cp);
-  const Vec3 right(cy, 0, -sy);
-  Mat3 R;
-  R << right, back.cross(right), back;
-  return R;
+  return camera_axes(camera.yaw, camera.pitch);
 }
 
 Vec3 eye(const Camera& camera) {
@@ -70,12 +73,9 @@ Ray ray_through(const Camera& camera, PixelSize size, const Eigen::Vector2f& pix
 }
 
 Vec3 on_screen(const Camera& camera, PixelSize size, const Vec3& point) {
-  const Vec3 seen = axes(camera).transpose() * (point - eye(camera));  // camera axes, from the eye
-  const float away = camera.orthographic ? camera.distance : -seen.z();
-  const Eigen::Vector2f place = seen.head<2>().cwiseQuotient(half_extent(camera, size.aspect())) / away;
-  return {(place.x() + 1) / 2 * static_cast<float>(size.width),
-          (1 - place.y()) / 2 * static_cast<float>(size.height),
-          camera.orthographic ? -seen.z() - camera.distance : -seen.z()};
+  Vec3 place = pinhole(camera, size).project(point);
+  if (camera.orthographic) place.z() -= camera.distance;
+  return place;
 }
 
 float metres_a_pixel(const Camera& camera, PixelSize size, const Vec3& point) {

@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 
 #include "retarget/base/fields.hpp"
+#include "retarget/geometry/pinhole.hpp"
 #include "retarget/math/types.hpp"
 
 namespace understudy::render {
@@ -32,6 +33,9 @@ FieldsOf<S, Camera> fields(V& visit, S& c) {
   unnamed(visit, c.target, c.yaw, c.pitch, c.distance, c.fov, c.orthographic);
 }
 
+/// The same as a projection; pixels from the picture's top left corner, so that the middle of the first one
+/// is at 0.5, 0.5. Files of 2D poses count from that middle: theirs is half a pixel less.
+Pinhole pinhole(const Camera& camera, PixelSize size);
 /// The camera's axes in the world as columns: right, up, back (towards the viewer).
 Mat3 axes(const Camera& camera);
 Vec3 eye(const Camera& camera);

@@ -24,7 +24,8 @@ constexpr ViewAngle kViews[] = {{"front", -0.58f}, {"side", -kPi / 2}};
 /// One picture of a sheet before it is drawn.
 struct Cell {
   Scene scene;
-  Points outline;  ///< what must be seen
+  Points outline;         ///< what must be seen
+  bool left_out = false;  ///< paper in its place
 };
 
 /// Finite points of what is shown. With strays those far from all joints are left out: they must not make
@@ -162,13 +163,20 @@ void draw_caption(Image& sheet, const Font& font, const std::string& caption, co
   paste(sheet, turned_left(strip), at.x(), at.y());
 }
 
-void draw_moment_header(Image& sheet, const Font& font, const SheetMoment& moment, const Eigen::Vector2f& at,
-                        float scale) {
-  const std::string seconds = printed("%.2f s", moment.seconds);
-  const std::string frame = "Frame " + std::to_string(moment.frame);
-  font.draw(sheet, frame, at, 18 * scale, kInk);
-  font.draw(sheet, seconds, {at.x() + font.width(frame, 18 * scale) + 10 * scale, at.y()}, 18 * scale,
-            kFaintInk);
+/// What stands over a column; either may be empty.
+struct Header {
+  std::string name, time;
+};
+
+/// Smaller where it would be wider than its column.
+void draw_header(Image& sheet, const Font& font, const Header& header, const Eigen::Vector2f& at,
+                 const Layout& layout, int column_width) {
+  float size = 18 * layout.scale, gap = header.name.empty() ? 0 : 10 * layout.scale;
+  const float wide = font.width(header.name, size) + gap + font.width(header.time, size);
+  const float room = static_cast<float>(column_width) - 4;
+  if (wide > room) size *= room / wide, gap *= room / wide;
+  font.draw(sheet, header.name, at, size, kInk);
+  font.draw(sheet, header.time, {at.x() + font.width(header.name, size) + gap, at.y()}, size, kFaintInk);
 }
 
 void draw_disc(Image& image, const Eigen::Vector2f& center, float radius, const Vec3& color) {
@@ -235,6 +243,37 @@ std::vector<Row> rows_of(std::vector<Cell>& sources, std::vector<Cell>& targets,
   return rows;
 }
 
+std::string time_text(double seconds) {
+  return printed("%.2f s", seconds);
+}
+
+/// Rows and columns, wherever they came from. sides: the title tells left from right.
+Image draw(Renderer& renderer, std::vector<Row> rows, const std::vector<Header>& headers,
+           const SheetOptions& options, bool sides) {
+  const Layout layout = lay_out(options, headers.size(), rows);
+  const float distance = common_distance(rows);
+  const Font font = Font::system();
+  const int band = layout.band_height + kBandGap;
+  const int top = options.title.empty() && !sides ? kMargin - layout.header / 2 : kTitle;
+  Image sheet(options.width, top + layout.bands * band - kBandGap + kMargin - kGap, kPaper);
+  draw_title(sheet, font, options.title, sides);
+  for (size_t i = 0; i < headers.size(); ++i) {
+    const int column = static_cast<int>(i) % layout.columns;
+    const int x = kMargin + kGutter + column * (rows[0].size.width + kGap);
+    int y = top + static_cast<int>(i) / layout.columns * band + layout.header;
+    draw_header(sheet, font, headers[i], {x + 2, y - layout.header * 0.32f}, layout, rows[0].size.width);
+    for (const Row& row : rows) {
+      const Cell& cell = (*row.cells)[i];
+      Camera camera = camera_for(row, cell);
+      camera.distance = distance;
+      if (!cell.left_out) paste(sheet, renderer.render_image(cell.scene, camera, row.size), x, y);
+      if (column == 0) draw_caption(sheet, font, row.caption, {kMargin - 4, y}, row.size.height);
+      y += row.size.height + kGap;
+    }
+  }
+  return sheet;
+}
+
 }  // namespace
 
 Image contact_sheet(Renderer& renderer, const std::vector<SheetMoment>& moments,
@@ -243,34 +282,55 @@ Image contact_sheet(Renderer& renderer, const std::vector<SheetMoment>& moments,
   std::vector<Cell> sources = source_cells(moments, options), targets = target_cells(moments, options);
   std::vector<Row> rows = rows_of(sources, targets, options);
   US_CHECK(!rows.empty(), "a contact sheet needs a scan, joints or a target to show");
-  const Layout layout = lay_out(options, moments.size(), rows);
-  const float distance = common_distance(rows);
-  const Font font = Font::system();
-
-  const int band = layout.band_height + kBandGap;
-  Image sheet(options.width, kTitle + layout.bands * band - kBandGap + kMargin - kGap, kPaper);
-  draw_title(sheet, font, options.title, have_sides(moments));
-  for (size_t i = 0; i < moments.size(); ++i) {
-    const int column = static_cast<int>(i) % layout.columns;
-    const int x = kMargin + kGutter + column * (rows[0].size.width + kGap);
-    int y = kTitle + static_cast<int>(i) / layout.columns * band + layout.header;
-    draw_moment_header(sheet, font, moments[i], {x + 2, y - layout.header * 0.32f}, layout.scale);
-    for (const Row& row : rows) {
-      const Cell& cell = (*row.cells)[i];
-      Camera camera = camera_for(row, cell);
-      camera.distance = distance;
-      paste(sheet, renderer.render_image(cell.scene, camera, row.size), x, y);
-      if (column == 0) draw_caption(sheet, font, row.caption, {kMargin - 4, y}, row.size.height);
-      y += row.size.height + kGap;
-    }
-  }
-  return sheet;
+  std::vector<Header> headers;
+  headers.reserve(moments.size());
+  for (const SheetMoment& moment : moments)
+    headers.push_back({"Frame " + std::to_string(moment.frame), time_text(moment.seconds)});
+  return draw(renderer, std::move(rows), headers, options, have_sides(moments));
 }
 
 Image contact_sheet(const std::vector<SheetMoment>& moments, const SheetOptions& options) {
   const auto context = make_offscreen_context();
   Renderer renderer;
   return contact_sheet(renderer, moments, options);
+}
+
+Image strip(Renderer& renderer, const std::vector<StripRow>& performers, const std::vector<double>& seconds,
+            const StripOptions& options) {
+  const bool side_by_side = seconds.size() == 1;
+  std::vector<std::vector<Cell>> cells(side_by_side ? 1 : performers.size());
+  std::vector<Header> headers;
+  bool anybody = false, bones = false;
+  for (size_t p = 0; p < performers.size(); ++p) {
+    US_CHECK(performers[p].moments.size() == seconds.size(), performers[p].caption, ": has ",
+             performers[p].moments.size(), " moments, the strip ", seconds.size());
+    for (const StripMoment& m : performers[p].moments) {
+      Cell cell = make_cell(m.mesh, m.skeleton, performers[p].color, /*strays=*/true);
+      cell.left_out = m.mesh.vertices.rows() == 0 && !m.skeleton;
+      anybody = anybody || !cell.left_out;
+      bones = bones || m.skeleton;
+      cells[side_by_side ? 0 : p].push_back(std::move(cell));
+    }
+    if (side_by_side) headers.push_back({performers[p].caption, ""});
+  }
+  US_CHECK(anybody, "nobody is to be seen in the strip");
+  std::vector<Row> rows;
+  rows.reserve(cells.size());
+  for (size_t r = 0; r < cells.size(); ++r)
+    rows.push_back(
+        {side_by_side ? time_text(seconds[0]) : performers[r].caption, options.yaw, &cells[r], 0.5f, {}});
+  if (!side_by_side)
+    for (const double time : seconds) headers.push_back({"", time_text(time)});
+  SheetOptions sheet;
+  sheet.title = options.title, sheet.width = options.width, sheet.columns = options.columns;
+  return draw(renderer, std::move(rows), headers, sheet, bones);
+}
+
+Image strip(const std::vector<StripRow>& performers, const std::vector<double>& seconds,
+            const StripOptions& options) {
+  const auto context = make_offscreen_context();
+  Renderer renderer;
+  return strip(renderer, performers, seconds, options);
 }
 
 }  // namespace understudy::render

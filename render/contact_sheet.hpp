@@ -1,4 +1,5 @@
-// A contact sheet: moments of a motion side by side, the scan with its extracted skeleton, and the target.
+// A contact sheet: moments of a motion side by side, the scan with its extracted skeleton, and the target;
+// and a strip: several performers of it, a row each.
 #pragma once
 
 #include <optional>
@@ -35,5 +36,31 @@ Image contact_sheet(Renderer& renderer, const std::vector<SheetMoment>& moments,
                     const SheetOptions& options = {});
 /// The same with an offscreen context of its own; no context is current on this thread afterwards.
 Image contact_sheet(const std::vector<SheetMoment>& moments, const SheetOptions& options = {});
+
+/// Who is seen at a moment of a strip; neither mesh nor skeleton: nobody, their motion has ended.
+struct StripMoment {
+  Mesh mesh;  ///< or a cloud
+  std::optional<SkeletonView> skeleton;
+};
+
+struct StripRow {
+  std::string caption;
+  std::vector<StripMoment> moments;
+  Vec3 color = SheetOptions().target_color;
+};
+
+struct StripOptions {
+  std::string title;
+  int width = 1800, columns = 12;  ///< as of a sheet
+  float yaw = 0;                   ///< radians, where it looks from: Camera's
+};
+
+/// A row for each performer, a column for each time; at one time alone a column for each performer. Scale and
+/// places as in a sheet. Throws Error where a row has not a moment for each time, and where nobody is seen.
+Image strip(Renderer& renderer, const std::vector<StripRow>& rows, const std::vector<double>& seconds,
+            const StripOptions& options = {});
+/// The same with an offscreen context of its own.
+Image strip(const std::vector<StripRow>& rows, const std::vector<double>& seconds,
+            const StripOptions& options = {});
 
 }  // namespace understudy::render

@@ -25,6 +25,21 @@ std::vector<uint8_t> interleaved(const Image& image) {
   return rgba;
 }
 
+/// A chunk of a PNG (PNG specification, 5.3): length, type, content, checksum.
+std::string png_chunk(const std::string& type_and_content) {
+  const auto big_endian = [](uint32_t value) {
+    std::string bytes;
+    for (int shift = 24; shift >= 0; shift -= 8) bytes += static_cast<char>((value >> shift) & 255u);
+    return bytes;
+  };
+  uint32_t crc = ~0u;  // annex D
+  for (const char byte : type_and_content) {
+    crc ^= static_cast<unsigned char>(byte);
+    for (int bit = 0; bit < 8; ++bit) crc = (crc >> 1) ^ ((crc & 1u) != 0 ? 0xedb88320u : 0u);
+  }
+  return big_endian(static_cast<uint32_t>(type_and_content.size() - 4)) + type_and_content + big_endian(~crc);
+}
+
 std::vector<uint8_t> png_bytes(const std::string& path, const Image& image) {
   png_image png{};
   png.version = PNG_IMAGE_VERSION;
@@ -86,6 +101,14 @@ void write_png(const std::string& path, const Image& image) {
            image.alpha.size(), " alpha values for ", image.pixels.size() / 3, " pixels");
   const auto bytes = png_bytes(path, image);
   write_file(path, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+}
+
+std::string png_file(const Image& image, const std::string& comment) {
+  constexpr size_t kHeader = 8 + 25;  // signature and IHDR
+  const std::vector<uint8_t> bytes = png_bytes("a picture", image);
+  std::string file(bytes.begin(), bytes.end());
+  if (!comment.empty()) file.insert(kHeader, png_chunk(std::string("tEXtComment\0", 12) + comment));
+  return file;
 }
 
 Image read_png(const std::string& path) {

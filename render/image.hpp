@@ -28,6 +28,9 @@ void paste(Image& image, const Image& source, int x, int y);
 
 /// Writes a PNG beside and renames it, so that no half file is ever seen. Throws Error naming the file.
 void write_png(const std::string& path, const Image& image);
+/// The bytes of a PNG that says `comment` right at its beginning, among its first 200 bytes where that is
+/// short; empty: it says nothing.
+std::string png_file(const Image& image, const std::string& comment = "");
 /// Reads a PNG as RGB, with alpha where the file has it. Throws Error naming the file.
 Image read_png(const std::string& path);
 

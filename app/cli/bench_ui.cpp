@@ -22,9 +22,12 @@
 #include "retarget/base/part_file.hpp"
 #include "retarget/base/rng.hpp"
 #include "retarget/base/text.hpp"
+#include "retarget/body/builtin_motion.hpp"
 #include "retarget/character/gltf_character.hpp"
 #include "retarget/character/read_character.hpp"
+#include "retarget/formats/motion_writers.hpp"
 #include "retarget/formats/surface_writer.hpp"
+#include "retarget/pipeline/human_rest.hpp"
 
 namespace understudy::app {
 namespace {
@@ -33,7 +36,7 @@ namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
 constexpr int kFrames = 132, kScanPoints = 8000, kVertices = 13000, kManyVertices = 200000,
-              kImported = 100000, kTries = 3;
+              kImported = 100000, kTries = 3, kStyled = 1050;
 constexpr double kReading = 3, kSettling = 2;  // seconds
 
 double seconds_since(Clock::time_point from) {
@@ -104,6 +107,10 @@ class BenchFiles {
       topology.faces = mesh.faces;
       write_file(target(vertices), obj_text(topology, mesh.vertices, "a target"));
     }
+    const Motion walk = builtin_motion("walk", human_rest());
+    BvhWriter walks(motion(), human_rest(), walk.fps);
+    for (size_t t = 0; t < kStyled; ++t) walks.push(walk.poses[t % walk.poses.size()]);
+    walks.finish();
     Mesh person = with_vertices(adult, kImported);
     for (int i = 0; i < kTries; ++i) {  // not one like another: nothing is known of it yet
       write_gltf_character(imported(i), character_of_mesh(person, "imported"));
@@ -121,6 +128,8 @@ class BenchFiles {
   std::string scan_again() const { return folder_ + "/scan_again"; }
   /// A GLB without bones, the i-th of kTries.
   std::string imported(int i) const { return folder_ + "/imported_" + std::to_string(i) + ".glb"; }
+  /// A walk of kStyled frames.
+  std::string motion() const { return folder_ + "/walk.bvh"; }
   std::string target(int vertices) const { return folder_ + "/target_" + std::to_string(vertices) + ".obj"; }
   std::string document() const { return folder_ + "/two.understudy"; }
   std::string video() const { return folder_ + "/video.mp4"; }
@@ -207,6 +216,7 @@ class UiBench {
     live(files);
     scrub();
     memory();
+    drag_style(files);
     open(files, kManyVertices);
     play("playing", kManyVertices);
     import(files);
@@ -492,6 +502,31 @@ class UiBench {
     }
     line("scrubbing to any frame",
          printed("%.0f ms median, %.0f ms at most", 1e3 * quantile(times, 0.5), 1e3 * quantile(times, 1)));
+  }
+
+  /// The strength of a style is dragged: from the last movement of the hand until every frame is made anew.
+  void drag_style(const BenchFiles& files) {
+    clear();
+    command("open", {files.motion(), files.target(kVertices)});
+    settle();
+    command("method.style", {"0", "child"});
+    settle();
+    std::vector<double> times;
+    for (int i = 0; i < kTries; ++i) {
+      Clock::time_point began;
+      for (int moved = 1; moved <= 20; ++moved) {
+        command("method.style_strength", {"0", printed("%.3f", 1 - 0.015 * moved - 0.01 * i)});
+        began = Clock::now();
+        step();
+      }
+      do step();
+      while (!application_->studio().made());
+      times.push_back(seconds_since(began));
+      settle();
+    }
+    line("a style's strength, dragged to all frames made",
+         printed("%.2f s median of %d, %.2f s at most, for %d frames", quantile(times, 0.5), kTries,
+                 quantile(times, 1), frame_count(application_->session())));
   }
 
   void memory() {

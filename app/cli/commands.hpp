@@ -19,6 +19,7 @@ Action declare_discover(CLI::App& command);
 Action declare_fill(CLI::App& command);
 Action declare_blend(CLI::App& command);
 Action declare_style(CLI::App& command);
+Action declare_sheet(CLI::App& command);
 Action declare_import_worker(CLI::App& command);
 Action declare_cases(CLI::App& command);
 Action declare_eval(CLI::App& command);

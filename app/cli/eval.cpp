@@ -1,12 +1,16 @@
 #include <CLI/CLI.hpp>
+#include <cmath>
 #include <cstdio>
+#include <filesystem>
 
 #include "app/cli/commands.hpp"
 #include "app/cli/evaluation.hpp"
 #include "app/cli/options.hpp"
 #include "app/cli/worst_frames.hpp"
+#include "render/band_plot.hpp"
 #include "retarget/base/part_file.hpp"
 #include "retarget/base/text.hpp"
+#include "retarget/metrics/metric_table.hpp"
 
 namespace understudy::app {
 namespace {
@@ -56,6 +60,23 @@ std::string one_line(const CaseResult& result) {
   return line;
 }
 
+/// FOLDER/style_figures.png: the medians of a style's subjects over the range of the real ones.
+void write_style_figures(const std::string& folder, const Json& summary) {
+  const auto number = [](const Json& row, const char* key) {
+    return row.contains(key) && row[key].is_number() ? row[key].get<double>() : std::nan("");
+  };
+  std::vector<render::BandRow> rows;
+  for (const auto& [key, row] : summary["medians"].items()) {
+    const Metric& metric = *find_metric(key);
+    rows.push_back({metric.label, metric.unit, metric.digits, number(row, "source"), number(row, "styled"),
+                    number(row, "real_low"), number(row, "real"), number(row, "real_high")});
+  }
+  std::filesystem::create_directories(folder);
+  render::write_png(folder + "/style_figures.png",
+                    render::band_plot(rows, {"Medians over subjects", "as they are", "in the style",
+                                             "who is wanted, with their median"}));
+}
+
 int eval(const EvalOptions& options, const std::string& out, const std::string& pictures) {
   check_writable(out);
   const Evaluation evaluation = evaluate(options, [](const CaseResult& result) {
@@ -64,6 +85,7 @@ int eval(const EvalOptions& options, const std::string& out, const std::string& 
   });
   if (!out.empty()) write_json(out, report_of(options, evaluation));
   if (!pictures.empty()) write_worst_frames(pictures, evaluation.breakdown.worst());
+  if (!pictures.empty() && !evaluation.style.is_null()) write_style_figures(pictures, evaluation.style);
   std::printf("mean: %s\n", to_json(evaluation.mean).dump().c_str());
   return evaluation.failed ? 1 : 0;
 }
@@ -123,7 +145,9 @@ Action declare_eval(CLI::App& command) {
                    "finds rigs once more, in even frames alone, and poses them on the odd ones (creatures)");
   command.add_option("--worst", options->worst, "worst frames to list (default: 20)")
       ->check(CLI::Range(0, 10000));
-  command.add_option("--pictures", files->pictures, "folder for pictures of the worst frames");
+  command.add_option(
+      "--pictures", files->pictures,
+      "folder for pictures of the worst frames; of a style's figures over those of real clips");
   add_scan_options(command, options->edits);
   add_method_options(command, options->how);
   return [options, files] { return eval(*options, files->out, files->pictures); };

@@ -38,6 +38,7 @@ struct ExportOptions {
   CharacterExportOptions file;
   MethodOptions how;
   TempoChoice tempo;
+  PoseChoice poses;
   bool print_map = false, all_takes = false, chose_influences = false;
   int64_t frames = 0;
 };
@@ -189,7 +190,8 @@ Performance perform_sources(const ExportOptions& options, const ExportFormat& fo
     if (k == 0)
       for (const std::string& source : options.sources)
         roles.push_back(roles_in(options, source, retargeter.extractor()));
-    ExportInput input{{target.character, retargeter.performer().deformer(), target.file}, {}, {}};
+    ExportInput input{
+        {target.character, retargeter.performer().deformer(), target.file, options.poses}, {}, {}};
     input.name = clip_name(path);
     for (const auto& of_source : roles)
       for (size_t i = 0; i < of_source.size(); ++i)
@@ -229,7 +231,7 @@ std::unique_ptr<Studio> open_document(const ExportOptions& options) {
 }
 
 ExportChoice choice_of(const ExportOptions& options, const ExportFormat& format) {
-  ExportChoice choice{&format, options.file, {}, {}};
+  ExportChoice choice{&format, options.file, {}, {}, options.poses};
   if (options.target.rig != Rig::Auto && format.is_character)
     choice.own_bones = options.target.rig == Rig::Own;
   if (!options.bones.empty()) choice.own_bones = options.bones == "own";
@@ -354,7 +356,9 @@ void add_file_options(CLI::App& command, ExportOptions& options) {
   std::string formats;
   for (const ExportFormat& info : export_formats()) append_item(formats, info.name);
   command.add_option("--format", options.format,
-                     formats + " (default: by the suffix; ply and obj are folders)");
+                     formats +
+                         " (default: by the suffix; ply and obj are folders, poses is one where --out does "
+                         "not end in .mp4)");
   // Before the options that it sets: those that are given count.
   command.add_option_function<std::string>(
       "--preset", [&options](const std::string& name) { apply(export_preset(name), options.file); },
@@ -383,9 +387,12 @@ void add_file_options(CLI::App& command, ExportOptions& options) {
 /// Empty: none was given.
 std::string first_not_of_documents(const CLI::App& command) {
   static const std::set<std::string> kOfDocuments = {
-      "DOCUMENT",      "--help",       "--take",       "--out",    "--format", "--all-takes",   "--preset",
-      "--bones",       "--rig",        "--influences", "--morphs", "--reduce", "--root-motion", "--in-place",
-      "--t-pose-clip", "--keep-clips", "--preview",    "--report", "--weights"};
+      "DOCUMENT",      "--help",        "--take",        "--out",        "--format",  "--all-takes",
+      "--preset",      "--bones",       "--rig",         "--influences", "--morphs",  "--reduce",
+      "--root-motion", "--in-place",    "--t-pose-clip", "--keep-clips", "--preview", "--report",
+      "--weights",     "--camera",      "--canvas",      "--rate",       "--count",   "--points",
+      "--pose-file",   "--stick-width", "--whole-face",  "--hide-limbs", "--depth",   "--normals",
+      "--mask"};
   for (const CLI::Option* option : command.get_options())
     if (option->count() > 0 && kOfDocuments.count(option->get_single_name()) == 0 &&
         kOfDocuments.count("--" + option->get_single_name()) == 0)
@@ -417,6 +424,7 @@ Action declare_export(CLI::App& command) {
   add_file_options(command, *options);
   add_method_options(command, options->how);
   add_tempo_options(command, options->tempo);
+  add_pose_options(command, options->poses);
   return [options, &command] {
     options->not_of_documents = first_not_of_documents(command);
     options->chose_influences = command.get_option("--influences")->count() > 0;

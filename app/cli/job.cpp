@@ -127,9 +127,11 @@ Running start(const JobOptions& options) {
   if (!options.skeletons.empty()) job.skeletons.emplace(job.source->count(), kSkeletonMoments);
   if (!options.report.empty()) job.evaluator.emplace(job.source->fps(), nullptr, &job.character->target.mesh);
   if (!options.out.empty()) {
-    const ExportFormat& format = export_format("", options.out);
+    const ExportFormat& format = export_format(options.format, options.out);
     ExportBody body{job.character, job.retargeter->performer().deformer(), {}};
     body.file.rights = style_rights(options.how.method.style);
+    body.poses = options.poses;
+    if (format.is_pictures) body.file.progress = [](float) { check_interrupt("during the export"); };
     body.file.their_rig = format.is_character && on_their_rig(options.target, *job.character);
     job.output = open_export(options.out, format, body, file_name(options.source.path), job.source->fps());
   }
@@ -167,7 +169,7 @@ void run_job(const JobOptions& options) {
   check(options.tempo);
   check_not_read(options.out, {options.source.path, options.source.motion, options.source.times,
                                options.source.markers, options.target.path});
-  if (!options.out.empty()) check_export(options.out, export_format("", options.out));
+  if (!options.out.empty()) check_export(options.out, export_format(options.format, options.out));
   for (const std::string& path : {options.report, options.preview, options.skeletons}) check_writable(path);
   Running job = start(options);
   Progress progress(file_name(options.source.path) + " -> " + file_name(options.target.path),

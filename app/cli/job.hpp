@@ -15,7 +15,9 @@ struct JobOptions {
   TargetOptions target;
   MethodOptions how;
   TempoChoice tempo;
-  std::string out;              ///< its suffix is the format's; empty: none
+  std::string out;              ///< empty: none
+  std::string format;           ///< of it; empty: by its suffix
+  PoseChoice poses;             ///< of pose pictures
   std::string report;           ///< .json; empty: none
   std::string preview;          ///< .png; empty: none
   std::string skeletons;        ///< .png of up to 60 frames with the extracted skeleton in each; empty: none

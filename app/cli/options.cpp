@@ -35,6 +35,45 @@ BoneTurn parse_turn(const std::string& text) {
   return {joint, kPi / 180 * degrees};
 }
 
+/// "auto", "wide" or pixels.
+void set_stick_width(render::PosePictureOptions& drawing, const std::string& width) {
+  double pixels = 0;
+  const bool is_word = width == "auto" || width == "wide";
+  US_CHECK(is_word || (parse_number(width, pixels) && pixels >= 0.5 && pixels <= 200), "--stick-width ",
+           width, ": is auto, wide, or half the width in pixels, 0.5 to 200");
+  drawing.wide_sticks = width == "wide";
+  drawing.half_width = static_cast<float>(pixels);
+}
+
+void add_drawing_options(CLI::App& command, PoseChoice& poses) {
+  const auto named = [&command](const char* name, auto& value, const auto& names, const char* words) {
+    command
+        .add_option_function<std::string>(
+            name,
+            [&value, &names](const std::string& word) {
+              using Value = std::decay_t<decltype(value)>;
+              value = static_cast<Value>(std::find(names.begin(), names.end(), word) - names.begin());
+            },
+            words)
+        ->check(CLI::IsMember(std::vector<std::string>(names.begin(), names.end())));
+  };
+  named("--points", poses.drawing.layout, render::kPoseLayoutNames,
+        "of pose pictures: openpose18, as ControlNet draws people (default), or body25, with feet");
+  named("--pose-file", poses.file, kPoseFileNames,
+        "beside pose pictures: controlnet, a JSON (default); openpose, a folder of them; none");
+  command.add_option_function<std::string>(
+      "--stick-width", [&poses](const std::string& width) { set_stick_width(poses.drawing, width); },
+      "of pose pictures: half of it in pixels; auto: 4 on canvases up to 512, more on larger ones "
+      "(default); wide: as xinsir's SDXL model knows them");
+  command.add_flag("!--whole-face", poses.hides_face,
+                   "of pose pictures: nose, eyes and ears stay where the head turns them away");
+  command.add_flag("--hide-limbs", poses.hides_limbs,
+                   "of pose pictures: what another part of the body hides is left out");
+  command.add_flag("--depth", poses.depth, "beside pose pictures: the same view's depth");
+  command.add_flag("--normals", poses.normals, "beside pose pictures: the same view's normals");
+  command.add_flag("--mask", poses.mask, "beside pose pictures: where the body is");
+}
+
 }  // namespace
 
 void add_scan_options(CLI::App& command, ScanEdits& edits) {
@@ -190,6 +229,27 @@ void add_tempo_options(CLI::App& command, TempoChoice& tempo) {
       ->check(CLI::Range(0.0, 10.0));
 }
 
+void add_pose_options(CLI::App& command, PoseChoice& poses) {
+  command.add_option_function<std::string>(
+      "--camera", [&poses](const std::string& words) { poses.camera = picture_camera(words); },
+      "of pose pictures: yaw=30,pitch=10,distance=4,fov=40 (degrees, metres) and orthographic, any of them; "
+      "a JSON of them; or a file of 2D poses that the first frame is laid onto (default: before the front "
+      "of the first frame, the whole take in view)");
+  std::string sizes;
+  for (const CanvasPreset& preset : kCanvasPresets)
+    append_item(sizes, printed("%dx%d", preset.canvas.width, preset.canvas.height));
+  command.add_option_function<std::string>(
+      "--canvas", [&poses](const std::string& size) { poses.canvas = parse_canvas(size); },
+      "of pose pictures: their size, such as " + sizes + " (default: the reference's, else 832x480)");
+  command.add_option("--rate", poses.rate, "of pose pictures: how many a second (default: the source's)")
+      ->check(CLI::Range(1.0, 1000.0));
+  command.add_option_function<std::string>(
+      "--count", [&poses](const std::string& count) { poses.count = picture_count(count); },
+      "of pose pictures: how many, the last pose stays where the take is shorter; or 4n+1: the most of 1, 5, "
+      "9, ... that it has");
+  add_drawing_options(command, poses);
+}
+
 std::string turn_words(const BoneTurn& turn) {
   const Vec3 degrees = 180 / kPi * turn.axis_angle;
   return printed("%s=%g,%g,%g", kJointNames[turn.joint], static_cast<double>(degrees.x()),
@@ -220,12 +280,7 @@ nlohmann::ordered_json style_json(const StyleChoice& style) {
 }
 
 std::string style_rights(const StyleChoice& style) {
-  if (!style.any()) return "";
-  const StyleNote note = nn::style_note(style);
-  if (!note.non_commercial() && note.attribution.empty()) return "";
-  std::string rights = "Performed in the style " + note.label + ", " + note.licence;
-  if (note.non_commercial()) rights += " (non-commercial)";
-  return rights + (note.attribution.empty() ? "" : ", " + note.attribution);
+  return style.any() ? nn::style_note(style).rights() : "";
 }
 
 std::function<std::shared_ptr<MotionSpace>()> motion_space_loader(const MethodOptions& how) {

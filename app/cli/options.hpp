@@ -7,6 +7,7 @@
 #include <string>
 
 #include "app/run/method.hpp"
+#include "app/run/pose_choice.hpp"
 #include "app/run/source.hpp"
 #include "app/run/target_file.hpp"
 #include "app/run/tempo_choice.hpp"
@@ -40,6 +41,8 @@ void add_method_options(CLI::App& command, MethodOptions& how);
 void add_tempo_options(CLI::App& command, TempoChoice& tempo);
 /// As --rest-pose takes it: "left_shoulder=0,0,-30".
 std::string turn_words(const BoneTurn& turn);
+/// What pose pictures show: --camera, --canvas, --rate, --count and how they are drawn.
+void add_pose_options(CLI::App& command, PoseChoice& poses);
 nn::NetworkOptions network_options(const MethodOptions& how);
 /// What reports say of a style: its name, strength, licence; null without one.
 nlohmann::ordered_json style_json(const StyleChoice& style);

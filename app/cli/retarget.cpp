@@ -5,6 +5,7 @@
 #include "app/cli/options.hpp"
 #include "app/run/exports.hpp"
 #include "retarget/base/error.hpp"
+#include "retarget/base/text.hpp"
 #include "retarget/formats/file_formats.hpp"
 
 namespace understudy::app {
@@ -25,7 +26,13 @@ Action declare_retarget(CLI::App& command) {
   add_target_options(command, job->target);
   add_method_options(command, job->how);
   add_tempo_options(command, job->tempo);
-  command.add_option("--out", job->out, "the animated target: " + export_suffixes());
+  command.add_option(
+      "--out", job->out,
+      "the animated target: " + export_suffixes() + "; or a folder of pose pictures (--format poses)");
+  std::string formats;
+  for (const ExportFormat& info : export_formats()) append_item(formats, info.name);
+  command.add_option("--format", job->format, formats + " (default: by the suffix)");
+  add_pose_options(command, job->poses);
   command.add_option("--report", job->report, "report as JSON");
   command.add_option("--preview", job->preview, "contact sheet as PNG");
   command.add_option("--skeletons", job->skeletons,

@@ -85,9 +85,14 @@ RiggedMotion rigged(const StyledClip& clip, const std::string& name) {
   return performed;
 }
 
-void write_clip(const std::string& path, const StyledClip& clip) {
+void write_clip(const std::string& path, const StyledClip& clip, const std::string& rights) {
   const std::string suffix = file_suffix(path);
-  if (suffix == ".glb") return write_gltf_character(path, to_character(rigged(clip, file_name(path))));
+  if (suffix == ".glb") {
+    Character character = to_character(rigged(clip, file_name(path)));
+    character.rights = rights;
+    return write_gltf_character(path, character);
+  }
+  tell_left_out(path, rights);
   if (suffix == ".bvh") {
     BvhWriter out(path, clip.rest, clip.fps);
     for (const Pose& pose : clip.poses) out.push(pose);
@@ -101,9 +106,10 @@ void write_clip(const std::string& path, const StyledClip& clip) {
 int list_styles() {
   for (const MannerFile& style : bundled_styles()) {
     const StyleNote& note = style.note;
-    std::printf("%-10s manner  %s. Made from: %s. Licence: %s%s\n", note.name.c_str(), note.sentence.c_str(),
-                note.made_from.c_str(), note.licence.c_str(),
-                note.non_commercial() ? " (non-commercial)" : "");
+    std::printf("%-10s manner  %s. Made from: %s. Licence: %s%s%s\n", note.name.c_str(),
+                note.sentence.c_str(), note.made_from.c_str(), note.licence.c_str(),
+                note.non_commercial() ? " (non-commercial)" : "",
+                note.attribution.empty() ? "" : (", " + note.attribution).c_str());
   }
   return 0;
 }
@@ -144,7 +150,7 @@ int run_style(const StyleOptions& options) {
   const double before_s = static_cast<double>(clip.poses.size()) / clip.fps;
   const Metrics before_tempo = options.report.empty() ? Metrics() : figures_of(clip);
   give_tempo(options.tempo, options.legs_m, clip);
-  write_clip(options.out, clip);
+  write_clip(options.out, clip, style_rights(options.how.method.style));
   if (!options.report.empty()) write_report(options, clip, before_tempo);
   std::printf(
       "%s: %zu frames, %.2f s (%.2f s of the source); it ends %.0f cm from where the source does, whose path "

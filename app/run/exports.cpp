@@ -4,8 +4,10 @@
 #include <filesystem>
 #include <type_traits>
 
+#include "app/run/pose_pictures.hpp"
 #include "app/run/report.hpp"
 #include "retarget/base/error.hpp"
+#include "retarget/base/log.hpp"
 #include "retarget/base/part_file.hpp"
 #include "retarget/base/text.hpp"
 #include "retarget/character/own_bones.hpp"
@@ -18,15 +20,6 @@ namespace {
 
 Joints joints_of(const ExportBody& body) {
   return body.file.joints.value_or(body.character->target.joints);
-}
-
-int64_t bytes_at(const std::string& path) {
-  std::error_code error;
-  if (!fs::is_directory(path, error)) return static_cast<int64_t>(fs::file_size(path, error));
-  int64_t sum = 0;
-  for (const auto& entry : fs::directory_iterator(path, error))
-    sum += static_cast<int64_t>(entry.file_size(error));
-  return sum;
 }
 
 /// The surface as the target's file has it: its vertices in its order, its corners' texture coordinates.
@@ -200,7 +193,11 @@ const std::vector<ExportFormat>& export_formats() {
       {"joints", ".csv", "CSV", "The positions of the 22 joints, as a table.", true, false, false,
        [](P path, B body, P, double fps) -> Output {
          return std::make_unique<FrameOutput<JointTable, false>>(path, body, joints, fps);
-       }}};
+       }},
+      {"poses", ".mp4", "Pose pictures", "What OpenPose would draw, for generators of images and films.",
+       true, false, false, open_pose_pictures, true},
+      {"pose_list", ".json", "Pose JSON", "The same as a list of points, as ControlNet has it.", true, false,
+       false, open_pose_pictures, true}};
   return formats;
 }
 
@@ -226,8 +223,17 @@ const ExportFormat& export_format(const std::string& name, const std::string& pa
 void check_export(const std::string& path, const ExportFormat& format) {
   US_CHECK(!format.is_character || file_suffix(path) == format.suffix, path, ": a ", format.label,
            " file must end in ", format.suffix);
-  if (*format.suffix) return check_writable(path);
+  if (format.is_pictures ? !is_picture_folder(path) : *format.suffix != 0) return check_writable(path);
   const PartFolder made_and_removed(path);
+}
+
+int64_t bytes_at(const std::string& path) {
+  std::error_code error;
+  if (!fs::is_directory(path, error)) return static_cast<int64_t>(fs::file_size(path, error));
+  int64_t sum = 0;
+  for (const auto& entry : fs::directory_iterator(path, error))
+    sum += static_cast<int64_t>(entry.file_size(error));
+  return sum;
 }
 
 bool is_one_of(const std::string& path, const std::vector<std::string>& files) {
@@ -271,7 +277,12 @@ void check_own_bones(const std::string& path, const ExportFormat& format) {
 std::unique_ptr<MotionOutput> open_export(const std::string& path, const ExportFormat& format,
                                           const ExportBody& body, const std::string& name, double fps) {
   check_export_options(path, format, body.file);
+  if (!format.is_character) tell_left_out(path, body.file.rights);
   return format.open(path, body, name, fps);
+}
+
+void tell_left_out(const std::string& path, const std::string& rights) {
+  if (!rights.empty()) log::warn(path + ": such a file has no place for its rights: " + rights);
 }
 
 ExportCost export_motion(const std::string& path, const ExportFormat& format,
@@ -293,14 +304,14 @@ ExportCost export_motion(const std::string& path, const ExportFormat& format,
   US_CHECK(input.clips.size() == 1, path, ": ", format.label, " holds one motion, not ", input.clips.size());
   const CharacterClip& clip = input.clips[0];
   const auto output = open_export(path, format, input.body, clip.name, clip.fps);
+  const bool tells = input.body.file.progress && !output->is_written_at_end();
   for (size_t t = 0; t < clip.poses.size(); ++t) {
-    if (input.body.file.progress)
-      input.body.file.progress(static_cast<float>(t) / static_cast<float>(clip.poses.size()));
+    if (tells) input.body.file.progress(static_cast<float>(t) / static_cast<float>(clip.poses.size()));
     ExportFrame frame{clip.poses[t]};
     if (t < input.source_joints.size()) frame.source_joints = input.source_joints[t];
     output->push(frame);
   }
-  if (input.body.file.progress) input.body.file.progress(1);
+  if (tells) input.body.file.progress(1);
   output->set_source_to_scan(input.source_to_scan);
   return output->finish();
 }

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "app/run/pose_choice.hpp"
 #include "retarget/character/character_export.hpp"
 
 namespace understudy::app {
@@ -24,6 +25,7 @@ struct ExportFormat {
   /// Its writer; see open_export.
   std::unique_ptr<MotionOutput> (*open)(const std::string& path, const ExportBody& body,
                                         const std::string& name, double fps);
+  bool is_pictures = false;  ///< through a camera; a path in neither .mp4 nor .json is a folder
 };
 
 /// All of them, in the order of menus.
@@ -35,6 +37,9 @@ std::string export_suffixes();
 
 /// Throws Error at once when nothing could be written there, before hours of work are done for it.
 void check_export(const std::string& path, const ExportFormat& format);
+
+/// Of a file, or of all files in a folder; 0 where there is none.
+int64_t bytes_at(const std::string& path);
 
 /// Whether writing there would replace one of these files; empty paths are none.
 bool is_one_of(const std::string& path, const std::vector<std::string>& files);
@@ -56,7 +61,8 @@ struct ExportBody {
   std::shared_ptr<const PreparedCharacter> character;
   std::shared_ptr<const Deformer> screen;  ///< bound to the target, with painted weights
   CharacterExportOptions
-      file;  ///< of other formats than glTF only in_place, joints, progress; their_rig: own_bones
+      file;            ///< of other formats than glTF only in_place, joints, progress; their_rig: own_bones
+  PoseChoice poses{};  ///< of pose pictures
 };
 
 /// One frame of a motion.
@@ -76,6 +82,8 @@ class MotionOutput {
   /// From the frames' source_joints to the coordinates of the source's file, for formats that hold them;
   /// known after the first frame.
   void set_source_to_scan(const Eigen::Matrix4d& matrix) { source_to_scan_ = matrix; }
+  /// Whether all the work is done by finish(), which then tells of its progress.
+  virtual bool is_written_at_end() const { return false; }
   /// Size and error of the written file. Throws Error, also where there was no frame.
   virtual ExportCost finish() = 0;
 
@@ -87,6 +95,9 @@ class MotionOutput {
 /// support the options.
 std::unique_ptr<MotionOutput> open_export(const std::string& path, const ExportFormat& format,
                                           const ExportBody& body, const std::string& name, double fps);
+
+/// Logs these rights, where there are any: such a file has no place for them.
+void tell_left_out(const std::string& path, const std::string& rights);
 
 /// What one performer performs.
 struct ExportInput {

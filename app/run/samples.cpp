@@ -117,7 +117,7 @@ void write_animal(Written& written) {
   write_frames("animal", creature_surfaces(kKind, rig, motion, kSeed), rig.surface.faces, capture, written);
 }
 
-void write_target(const std::string& name, const PersonOptions& person, Written& written) {
+void write_sample_target(const std::string& name, const PersonOptions& person, Written& written) {
   const ShapedBody body = builtin_person(person);
   Points standing = body.vertices;
   standing.col(1).array() -= standing.col(1).minCoeff();
@@ -153,8 +153,8 @@ void write_samples(const std::string& folder) {
   write_person({"scan", "dance", PersonOptions{1.68f, 1.0f, 1, 28}, 1.2f, 2.9f, 4800}, written);
   write_person({"walk", "walk", PersonOptions{1.80f, .95f, 0, 35}, 1.0f, 1.5f, 4500}, written);
   write_animal(written);
-  write_target("target_adult", PersonOptions{1.76f, 1.40f, 0, 45}, written);
-  write_target("target_child", PersonOptions{1.15f, 1.0f, 1, 6}, written);
+  write_sample_target("target_adult", PersonOptions{1.76f, 1.40f, 0, 45}, written);
+  write_sample_target("target_child", PersonOptions{1.15f, 1.0f, 1, 6}, written);
   write_file(written.folder / "README.md", readme(written));
 }
 

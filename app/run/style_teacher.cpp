@@ -70,13 +70,14 @@ void complete(StyleNote& note, const std::string& from, const std::string& to) {
 
 }  // namespace
 
-std::vector<std::string> recordings(const std::string& folder) {
+std::vector<std::string> recordings(const std::string& folder, const std::function<void()>& look) {
   std::error_code failed;
   US_CHECK(fs::is_directory(folder, failed), folder, ": there is no such folder of recordings");
   std::vector<std::string> all;
-  const auto look = [&](const fs::path& in, const auto& again) -> void {
+  const auto search = [&](const fs::path& in, const auto& again) -> void {
     bool scans = false;
     for (const auto& entry : fs::directory_iterator(in, failed)) {
+      if (look) look();
       const std::string path = entry.path().string();
       if (entry.is_directory(failed)) {
         again(entry.path(), again);
@@ -88,7 +89,7 @@ std::vector<std::string> recordings(const std::string& folder) {
     }
     if (scans) all.push_back(in.string());
   };
-  look(folder, look);
+  search(folder, search);
   US_CHECK(!all.empty(), folder, ": holds no skeletal motion (", format_names(kMotion),
            ") and no folder of scans");
   std::sort(all.begin(), all.end());

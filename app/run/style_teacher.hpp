@@ -19,9 +19,9 @@ struct StyleLesson {
   StyleNote note;  ///< what its file is to say; label and licence are needed, the rest follows where empty
 };
 
-/// The recordings in a folder and those in it, in the order of their names. Throws Error where there is no
-/// such folder, or none.
-std::vector<std::string> recordings(const std::string& folder);
+/// The recordings in a folder and those in it, in the order of their names. look: called for each of their
+/// files, may throw. Throws Error where there is no such folder, or none.
+std::vector<std::string> recordings(const std::string& folder, const std::function<void()>& look = {});
 
 /// Called after each frame and each recording. What it throws ends the lesson.
 using LessonStep = std::function<void(size_t done, size_t of, const std::string& recording)>;

@@ -637,7 +637,9 @@ void Engine::Impl::perform(TakeWork& take) {
     event.times.push_back({seen.read_ms, extract_ms, result.transfer_ms, result.deform_ms,
                            seen.read_ms + extract_ms + result.transfer_ms + result.deform_ms});
   }
-  if (!event.frames.empty()) emit(std::move(event));
+  if (event.frames.empty()) return;
+  event.rights = take.styled->rights();
+  emit(std::move(event));
 }
 
 Engine::Engine(NetworksOf networks, std::shared_ptr<MotionBlender> blender, SpaceOf motion_space)

@@ -109,6 +109,7 @@ struct TakeFrames {
   std::vector<KeptSource> seen;   ///< of each frame, where it is of another person than the source's
   std::vector<FrameTimes> times;  ///< of new frames; empty when redone
   std::string warning;            ///< that the target falls apart; once
+  std::string rights;             ///< as TakeState's
 };
 using EngineEvent = std::variant<SourceOpened, SourceCompleting, SourceFailed, SourceFrames, TakeLoaded,
                                  TakeReady, TakeFailed, TakeFrames>;

@@ -94,8 +94,8 @@ void export_figures(Call& c) {
   const std::string path = c.path(1);
   c.studio.jobs().start(
       "Exporting " + file_name(path),
-      [path, series = state.series, fps = c.session.source.fps](JobControl&) {
-        write_csv(path, series, fps);
+      [path, series = state.series, times = state.times, fps = c.session.source.fps](JobControl&) {
+        write_csv(path, series, fps, times);
       },
       [&studio = c.studio, path] { studio.notify("Exported " + file_name(path), false, showing(path)); });
   c.session.settings.export_format = "csv";
@@ -105,12 +105,15 @@ void export_figures(Call& c) {
 }  // namespace
 
 void add_export_commands(Commands& commands) {
-  commands.add({"export.run", "Export animation",
-                "TAKE PATH [format=NAME] [preset=" + names_of_presets() +
-                    "] [bones=own|22] [influences=4|8] [morphs=COUNT] [reduce=MM] "
-                    "[in_place=on] [root_motion=on] [t_pose=on] [keep_clips=on] [take=NAME ...: clips of the "
-                    "same character, or others who perform at once]"},
-               run_export);
+  commands.add(
+      {"export.run", "Export animation",
+       "TAKE PATH [format=NAME] [preset=" + names_of_presets() +
+           "] [bones=own|22] [influences=4|8] [morphs=COUNT] [reduce=MM] "
+           "[in_place=on] [root_motion=on] [t_pose=on] [keep_clips=on] [camera=WORDS|FILE] "
+           "[canvas=WIDTHxHEIGHT] [rate=NUMBER] [count=COUNT|4n+1] [depth=on] [normals=on] [mask=on] "
+           "[take=NAME ...: clips of the "
+           "same character, or others who perform at once]"},
+      run_export);
   commands.add({"export.all", "Export all takes, a file each",
                 "FOLDER [format=NAME|csv] and the options of export.run"},
                export_all);

@@ -55,7 +55,10 @@ std::vector<Series> joint_figures(const FigureInput& input) {
   for (const Metric& metric : metric_table()) {
     if (!metric.per_frame || is_of_surfaces(metric) || !is_known(metric, seen, truth)) continue;
     all.push_back(blank_series(metric.key, shown));
-    const auto figures = per_frame_figures(metric, seen, truth, count, input.shown.fps);
+    auto figures = per_frame_figures(metric, seen, truth, count, input.shown.fps);
+    const bool is_speed = (metric.needs & kNeedsStyle) != 0;  // each that a style has of single frames
+    for (size_t t = 0; is_speed && input.times != nullptr && t < figures.size(); ++t)
+      figures[t] /= static_cast<float>(length_at(*input.times, input.shown.fps, static_cast<double>(t)));
     std::copy(figures.begin(), figures.end(), all.back().values.begin());
   }
   return all;

@@ -11,11 +11,12 @@ namespace understudy::app {
 /// The inputs of the figures; `joints` is as long as `shown`, `performed` as its part that was performed.
 struct FigureInput {
   const Motion& shown;
-  const std::vector<Joints>& joints;         ///< of the target
-  const SharedFrames<KeptFrame>& performed;  ///< with the source's joints as the take transferred them
-  const SharedFrames<KeptSource>& source;    ///< may be shorter: then nothing is measured against it
-  const Truth* truth = nullptr;              ///< may be null
-  bool has_style = false;                    ///< figures of how it is performed are wanted, too
+  const std::vector<Joints>& joints;           ///< of the target
+  const SharedFrames<KeptFrame>& performed;    ///< with the source's joints as the take transferred them
+  const SharedFrames<KeptSource>& source;      ///< may be shorter: then nothing is measured against it
+  const Truth* truth = nullptr;                ///< may be null
+  bool has_style = false;                      ///< figures of how it is performed are wanted, too
+  const std::vector<double>* times = nullptr;  ///< as TakeState's: what moves is as fast as it is seen
 };
 
 /// Every metric of the table of single frames that joints and poses give, as far as its input is known. As

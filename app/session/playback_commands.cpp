@@ -51,8 +51,8 @@ void add_transport(Commands& commands) {
 void add_seeking(Commands& commands) {
   commands.add({"playback.frame", "Go to frame", "FRAME"},
                [](Call& c) { go_to(c.session, c.number<double>(0, "frame")); });
-  commands.add({"playback.seek", "Seek", "SECONDS: jumps to a time"},
-               [](Call& c) { go_to(c.session, c.number<double>(0, "time") * c.session.source.fps); });
+  commands.add({"playback.seek", "Seek", "SECONDS: jumps to a time, at the tempo of the current take"},
+               [](Call& c) { go_to(c.session, frame_at(c.session, c.number<double>(0, "time"))); });
   commands.add({"playback.rate", "Rate", "FACTOR: 0.1 to 4"},
                [](Call& c) { c.session.playback.rate = c.clamped(0, "rate", 0.1, 4.0); });
   commands.add({"playback.loop", "Loop", "on|off|toggle", "L"},

@@ -71,8 +71,9 @@ Refined refine(const RefineRequest& request, MotionSpace* space) {
     });
     if (result.problem.empty()) result.problem = problem;
   }
-  result.series = joint_figures({result.shown, result.joints, request.performed, request.source,
-                                 request.truth.get(), request.has_style || request.edits.tempo.has_value()});
+  result.series =
+      joint_figures({result.shown, result.joints, request.performed, request.source, request.truth.get(),
+                     request.has_style || request.edits.tempo.has_value(), &result.times});
   return result;
 }
 

@@ -18,6 +18,10 @@ void append(std::string& text, Number value) {
   text.append(digits, std::to_chars(digits, digits + sizeof digits, value).ptr);
 }
 
+void append_seconds(std::string& text, double seconds) {
+  append(text, std::round(seconds * 1e6) / 1e6);
+}
+
 }  // namespace
 
 const Series* find(const std::vector<Series>& series, const std::string& key) {
@@ -26,10 +30,11 @@ const Series* find(const std::vector<Series>& series, const std::string& key) {
   return nullptr;
 }
 
-void write_csv(const std::string& path, const std::vector<Series>& series, double fps) {
+void write_csv(const std::string& path, const std::vector<Series>& series, double fps,
+               const std::vector<double>& take_seconds) {
   US_CHECK(fps > 0 && std::isfinite(fps), path, ": no time can be given at ", fps, " frames/s");
   size_t frames = 0;
-  std::string text = "frame,seconds";
+  std::string text = take_seconds.empty() ? "frame,seconds" : "frame,seconds,take_seconds";
   for (const Series& one : series) {
     frames = std::max(frames, one.values.size());
     text += ',' + csv_cell(one.key);
@@ -38,7 +43,9 @@ void write_csv(const std::string& path, const std::vector<Series>& series, doubl
   for (size_t frame = 0; frame < frames; ++frame) {
     append(text, frame);
     text += ',';
-    append(text, std::round(static_cast<double>(frame) / fps * 1e6) / 1e6);
+    append_seconds(text, static_cast<double>(frame) / fps);
+    if (!take_seconds.empty()) text += ',';
+    if (frame < take_seconds.size()) append_seconds(text, take_seconds[frame]);
     for (const Series& one : series) {
       text += ',';
       if (frame < one.values.size() && std::isfinite(one.values[frame])) append(text, one.values[frame]);

@@ -17,7 +17,9 @@ struct Series {
 /// The series with this key; null when there is none.
 const Series* find(const std::vector<Series>& series, const std::string& key);
 
-/// One row per frame: frame, seconds, then each series. Throws Error naming the path.
-void write_csv(const std::string& path, const std::vector<Series>& series, double fps);
+/// One row per frame: frame, seconds of the source, where it has a tempo seconds in the take, then each
+/// series. take_seconds: of each frame; empty: there are none. Throws Error naming the path.
+void write_csv(const std::string& path, const std::vector<Series>& series, double fps,
+               const std::vector<double>& take_seconds = {});
 
 }  // namespace understudy::app

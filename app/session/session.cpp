@@ -181,9 +181,33 @@ std::vector<MomentBetween> moments_of(const Session& session, size_t take) {
                                 static_cast<float>(session.source.fps));
 }
 
-double length_at(const TakeState& take, double fps, double frame) {
+double length_at(const std::vector<double>& times, double fps, double frame) {
   const auto t = static_cast<size_t>(std::max(frame, 0.0));
-  return t + 1 < take.times.size() ? (take.times[t + 1] - take.times[t]) * fps : 1;
+  return t + 1 < times.size() ? (times[t + 1] - times[t]) * fps : 1;
+}
+
+const std::vector<double>& clock_times(const Session& session) {
+  static const std::vector<double> kNone;
+  const TakeState* const take = at_or_null(session.takes, session.selected_take);
+  const bool all_known = take != nullptr && take->times.size() == take->shown.poses.size();
+  return all_known ? take->times : kNone;
+}
+
+double moment_of(const Session& session, double frame) {
+  const std::vector<double>& times = clock_times(session);
+  const double fps = session.source.fps;
+  if (times.empty()) return frame / fps;
+  const double whole = std::clamp(std::floor(frame), 0.0, static_cast<double>(times.size() - 1));
+  return times[static_cast<size_t>(whole)] + (frame - whole) * length_at(times, fps, whole) / fps;
+}
+
+double frame_at(const Session& session, double seconds) {
+  const std::vector<double>& times = clock_times(session);
+  const double fps = session.source.fps;
+  if (times.empty()) return seconds * fps;
+  const auto after = std::upper_bound(times.begin() + 1, times.end(), seconds);
+  const auto whole = static_cast<double>(after - times.begin() - 1);
+  return whole + (seconds - *(after - 1)) * fps / length_at(times, fps, whole);
 }
 
 Box shown_crop(const Session& session) {

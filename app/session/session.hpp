@@ -91,6 +91,7 @@ struct TakeState {
   std::shared_ptr<const RowMatrix> weights;  ///< [V, 22], edited
   std::shared_ptr<const Deformer> deformer;  ///< bound to the target, with those weights
   SharedFrames<KeptFrame> performed;         ///< the engine's frames
+  std::string rights;                        ///< what files made of them have to say; empty: nothing
   SharedFrames<KeptSource> another;          ///< who is performed, where that is not the source's person
   LimbsSight limbs{};                        ///< the least that is seen of each limb so far
   Motion shown;                ///< after the user's edits of the result; may trail `performed` shortly
@@ -249,8 +250,15 @@ int shown_frame(const Session& session);
 /// What is shown of a take, in order, at the source's rate: without what trim and skip leave out, at its
 /// tempo.
 std::vector<MomentBetween> moments_of(const Session& session, size_t take);
-/// How long a frame of a take lasts against the source's: its tempo there.
-double length_at(const TakeState& take, double fps, double frame);
+/// How long a frame of a take lasts against the source's: its tempo there. times: as TakeState's.
+double length_at(const std::vector<double>& times, double fps, double frame);
+/// The clock is that of the selected take, at its tempo where it has one, else the source's. All views show
+/// the same frame, so the same moment of the action, whatever the tempo of their takes.
+/// The moment of each frame of the selected take, seconds; empty: evenly, at the source's rate.
+const std::vector<double>& clock_times(const Session& session);
+/// Seconds on that clock, and the frame, with its fraction, that is shown then; both go on beyond the ends.
+double moment_of(const Session& session, double frame);
+double frame_at(const Session& session, double seconds);
 /// The crop box as it is shown: open sides, and all of them without a crop, around all points of all frames
 /// so far (of a skeletal motion: around its people).
 Box shown_crop(const Session& session);

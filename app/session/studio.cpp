@@ -352,7 +352,7 @@ void Studio::tick(double seconds, double played) {
   if (edits.trim && trimmed.in < 0) trimmed.in = edits.trim->first;
   if (edits.trim && trimmed.out < 0) trimmed.out = edits.trim->last;
   const double length =
-      takes ? length_at(session_.takes[session_.selected_take], session_.source.fps, trimmed.frame) : 1;
+      takes ? length_at(session_.takes[session_.selected_take].times, session_.source.fps, trimmed.frame) : 1;
   advance(trimmed, played, session_.source.fps / length, count, edits.skip);
   // A new target, and a scan that is cropped, start without frames: the place is kept until it comes there.
   const auto& source = session_.source;

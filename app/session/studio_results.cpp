@@ -310,6 +310,7 @@ void Studio::take_in(TakeFrames& event) {
   TakeState* const take = take_of(event.id);
   if (!take || !take->target) return;
   const bool redone = put(take->performed, event.first, std::move(event.frames));
+  take->rights = std::move(event.rights);
   for (const FrameTimes& times : event.times) take->latency.add(times);
   const size_t k = take - session_.takes.data();
   if (!event.seen.empty()) put(take->another, event.first, std::move(event.seen));

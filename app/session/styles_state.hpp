@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,9 +15,15 @@ struct TaughtStyle {
   std::string file;  ///< whole path, by which documents choose it
 };
 
+/// What was removed from this machine; gone for good when the program ends.
+struct ForgottenStyle {
+  std::string name, file, text;  ///< the text of its file
+};
+
 struct StylesState {
-  std::vector<TaughtStyle> taught;  ///< by their names
-  int64_t job = 0;                  ///< that taught last, or does; 0: none yet
+  std::vector<TaughtStyle> taught;          ///< by their names
+  int64_t job = 0;                          ///< that taught last, or does; 0: none yet
+  std::optional<ForgottenStyle> forgotten;  ///< last, and can be brought back; none: nothing can
 };
 
 /// The one of that name or file; null where there is none.

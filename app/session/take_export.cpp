@@ -14,6 +14,28 @@ namespace understudy::app {
 namespace fs = std::filesystem;
 namespace {
 
+/// Whether it is one of pose pictures.
+bool set_pose_option(PoseChoice& poses, const std::string& key, const std::string& value) {
+  const ArgumentReader words({value});
+  if (key == "camera")
+    poses.camera = picture_camera(value);
+  else if (key == "canvas")
+    poses.canvas = parse_canvas(value);
+  else if (key == "rate")
+    poses.rate = words.number<double>(0, key.c_str());
+  else if (key == "count")
+    poses.count = picture_count(value);
+  else if (key == "depth")
+    poses.depth = words.on(0);
+  else if (key == "normals")
+    poses.normals = words.on(0);
+  else if (key == "mask")
+    poses.mask = words.on(0);
+  else
+    return false;
+  return true;
+}
+
 void set_option(ExportChoice& out, const std::string& key, const std::string& value) {
   const ArgumentReader words({value});
   const auto in_range = [&](float high) {
@@ -39,7 +61,7 @@ void set_option(ExportChoice& out, const std::string& key, const std::string& va
     out.file.keep_clips = words.on(0);
   else if (key == "take")
     out.takes.push_back(value);
-  else
+  else if (!set_pose_option(out.poses, key, value))
     throw Error("there is no export option '" + key + "'");
 }
 
@@ -87,14 +109,17 @@ ExportInput input_of(const Session& session, const std::vector<size_t>& takes, c
   const TakeState& state = session.takes[takes[0]];
   ExportInput out;
   out.name = take.name;
+  std::vector<std::string> rights;
   for (const size_t k : takes) {
     const std::string& name = session.document.takes[k].name;
     US_CHECK(session.takes[k].problem.empty(), name, ": ", session.takes[k].problem);
     US_CHECK(session.takes[k].ready && session.takes[k].character && !session.takes[k].shown.poses.empty(),
              name, ": has no frames to export yet");
     add_clip(out, session, k, takes.size() > 1 ? name : clip_name(session, take));
+    rights.push_back(session.takes[k].rights);
   }
-  out.body = {state.character, state.deformer, choice.file};
+  out.body = {state.character, state.deformer, choice.file, choice.poses};
+  out.body.file.rights = joined_once(rights, "; ");
   const bool own = on_their_rig(take.target, *state.character);
   US_CHECK(own || !choice.own_bones.value_or(false), take.name, ": does not perform on bones of its own");
   out.body.file.their_rig = choice.own_bones.value_or(own && choice.format->is_character);
@@ -260,9 +285,8 @@ std::vector<TakeFile> take_files(const Session& session, const std::string& fold
 std::vector<TakeFile> figure_files(const Session& session, const std::string& folder) {
   return files_of(session, folder, ".csv", [&](size_t k, const std::string& path) -> WriteTake {
     US_CHECK(!session.takes[k].series.empty(), session.document.takes[k].name, ": there are no metrics yet");
-    return [path, series = session.takes[k].series, fps = session.source.fps](const auto&) {
-      write_csv(path, series, fps);
-    };
+    return [path, series = session.takes[k].series, times = session.takes[k].times,
+            fps = session.source.fps](const auto&) { write_csv(path, series, fps, times); };
   });
 }
 

@@ -18,11 +18,13 @@ struct ExportChoice {
   /// the character's own bones; none: those of an animated character, where the take performs on them
   std::optional<bool> own_bones;
   std::vector<std::string> takes;  ///< more takes, by name or number from 0
+  PoseChoice poses;                ///< of pose pictures
 };
 
 /// key=value words, of which a later one counts: format=NAME, preset=NAME, bones=own|22, influences=4|8,
-/// morphs=COUNT, reduce=MM, in_place=on|off, root_motion=on|off, t_pose=on|off, keep_clips=on|off, and any
-/// number of take=NAME for more clips; without a format the path's suffix decides.
+/// morphs=COUNT, reduce=MM, in_place=on|off, root_motion=on|off, t_pose=on|off, keep_clips=on|off, of pose
+/// pictures camera=WORDS, canvas=WxH, rate=NUMBER, count=COUNT|4n+1, depth=on|off, normals=on|off,
+/// mask=on|off, and any number of take=NAME for more clips; without a format the path's suffix decides.
 /// Throws Error for any other.
 ExportChoice export_choice(const std::string& path, const std::vector<std::string>& words);
 

@@ -1,11 +1,13 @@
 // Styles of one's own: fitted to recordings in the background, kept on this machine.
 #include <algorithm>
 #include <filesystem>
+#include <utility>
 
 #include "app/run/style_teacher.hpp"
 #include "app/session/command_sets.hpp"
 #include "app/session/taught_styles.hpp"
 #include "retarget/base/error.hpp"
+#include "retarget/base/file.hpp"
 #include "retarget/base/part_file.hpp"
 #include "retarget/base/text.hpp"
 
@@ -29,7 +31,7 @@ std::string kept_folder(const Call& c) {
   return folder;
 }
 
-/// joints=, licence=, made_from=, replace=.
+/// joints=, licence=, attribution=, made_from=, replace=.
 void set_lesson(Teaching& teaching, const std::string& setting) {
   const size_t equals = setting.find('=');
   US_CHECK(equals != std::string::npos, "a setting is written as joints=all, not ", setting);
@@ -40,12 +42,14 @@ void set_lesson(Teaching& teaching, const std::string& setting) {
     lesson.joints = value.one_of(0, "joints", {"all", "trunk-and-limbs", "upper-body"});
   else if (key == "licence")
     lesson.note.licence = value.arguments[0];
+  else if (key == "attribution")
+    lesson.note.attribution = value.arguments[0];
   else if (key == "made_from")
     lesson.note.made_from = value.arguments[0];
   else if (key == "replace")
     teaching.replace = value.choice(0, "replace", {"0", "1"}) == 1;
   else
-    throw Error("a style has joints, licence, made_from and replace, not " + excerpt(key));
+    throw Error("a style has joints, licence, attribution, made_from and replace, not " + excerpt(key));
 }
 
 std::shared_ptr<Teaching> asked_teaching(const Call& c) {
@@ -128,10 +132,28 @@ void forget_style(Call& c) {
   for (const Take& take : c.document.takes)
     US_CHECK(take.method.style.file != style->file, take.name, " has the style ", name,
              ": it needs another one first");
+  ForgottenStyle forgotten{name, style->file, read_file(style->file)};
   std::error_code failed;
   fs::remove(style->file, failed);
   US_CHECK(!failed, style->file, ": cannot be removed: ", failed.message());
   c.session.styles.taught = taught_styles(kept_folder(c));
+  c.studio.notify("The style '" + name + "' was forgotten", false,
+                  {"Undo", join_line("style.restore", {name})});
+  c.session.styles.forgotten = std::move(forgotten);
+}
+
+/// Undo is of the document; a style's file is none of it.
+void restore_style(Call& c) {
+  const std::string& name = c.word(0, "name");
+  auto& forgotten = c.session.styles.forgotten;
+  US_CHECK(forgotten && forgotten->name == name, "the style '", excerpt(name), "' was not forgotten last");
+  std::error_code failed;
+  US_CHECK(!fs::exists(forgotten->file, failed), "there is another style '", name, "' by now");
+  fs::create_directories(fs::path(forgotten->file).parent_path(), failed);  // writing tells what is wrong
+  write_file(forgotten->file, forgotten->text);
+  const std::string file = std::exchange(forgotten, std::nullopt)->file;
+  c.session.styles.taught = taught_styles(kept_folder(c));
+  perform_anew(c.studio, file);
 }
 
 }  // namespace
@@ -139,10 +161,12 @@ void forget_style(Call& c) {
 void add_teach_commands(Commands& commands) {
   commands.add({"style.teach", "Teach a style",
                 "FROM TO NAME [SETTING=VALUE ...]: folders of recordings of two manners of moving; joints, "
-                "licence, made_from, replace=1"},
+                "licence, attribution, made_from, replace=1"},
                start_teaching);
   commands.add({"style.forget", "Forget a taught style", "NAME: it is removed from this machine"},
                forget_style);
+  commands.add({"style.restore", "Bring back a forgotten style", "NAME: the one that was forgotten last"},
+               restore_style);
 }
 
 }  // namespace understudy::app

@@ -127,7 +127,8 @@ Facts performance(const Session& session) {
           {"taught", std::to_string(session.styles.taught.size())},  // on this machine
           {"tempo", tempo(session)},
           {"tempo_marks", tempo_marks(session)},
-          {"lasts", lasts(session)}};
+          {"lasts", lasts(session)},
+          {"clock", printed("%.2f", moment_of(session, std::max(0, shown_frame(session))))}};
 }
 
 Facts of_study(const Session& session) {

@@ -83,6 +83,13 @@ void append_item(std::string& list, std::string_view item, std::string_view sepa
   list += item;
 }
 
+std::string joined_once(const std::vector<std::string>& items, std::string_view separator) {
+  std::string list;
+  for (auto item = items.begin(); item != items.end(); ++item)
+    if (!item->empty() && std::find(items.begin(), item, *item) == item) append_item(list, *item, separator);
+  return list;
+}
+
 std::vector<std::string> csv_cells(const std::string& line, char separator) {
   std::vector<std::string> cells(1);
   bool quoted = false;

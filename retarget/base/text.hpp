@@ -30,6 +30,8 @@ std::vector<std::string> split(std::string_view text, char separator);
 void split_words(std::string_view line, std::string_view separators, std::vector<std::string_view>& words);
 /// Appends to a list in words: "a", then "a, b".
 void append_item(std::string& list, std::string_view item, std::string_view separator = ", ");
+/// As a list in words, each item once; empty ones are none.
+std::string joined_once(const std::vector<std::string>& items, std::string_view separator = ", ");
 /// The beginning of a text for use in a message: at most 40 printable characters.
 std::string excerpt(std::string_view text);
 

@@ -8,6 +8,7 @@
 #include "retarget/base/error.hpp"
 #include "retarget/base/index.hpp"
 #include "retarget/base/part_file.hpp"
+#include "retarget/base/text.hpp"
 #include "retarget/character/gltf_character.hpp"
 #include "retarget/character/joined_characters.hpp"
 #include "retarget/character/own_bones.hpp"
@@ -643,12 +644,19 @@ ExportCost measure(Character written, const std::vector<StagedPerformance>& cast
   return cost;
 }
 
+/// Of all who perform, each once.
+std::string rights_of(const std::vector<CharacterPerformance>& performances) {
+  std::vector<std::string> all;
+  for (const CharacterPerformance& one : performances) all.push_back(one.options.rights);
+  return joined_once(all, "; ");
+}
+
 }  // namespace
 
 Character animated_character(const std::vector<CharacterPerformance>& performances) {
   const std::vector<StagedPerformance> cast = staged(performances);
   Character character = animated(cast, performances[0].options.progress);
-  character.rights = performances[0].options.rights;
+  character.rights = rights_of(performances);
   return character;
 }
 
@@ -656,7 +664,7 @@ ExportCost export_character(const std::string& path, const std::vector<Character
   const std::vector<StagedPerformance> cast = staged(performances);
   const auto& progress = performances[0].options.progress;
   Character character = animated(cast, part_of(progress, 0, 0.6f));
-  character.rights = performances[0].options.rights;
+  character.rights = rights_of(performances);
   const std::string bytes = gltf_bytes(character, path);
   ExportCost cost = measure(parse_gltf_character(bytes, path), cast, part_of(progress, 0.6f, 1));
   cost.bytes = static_cast<int64_t>(bytes.size());

@@ -29,7 +29,7 @@ struct CharacterExportOptions {
       false;  ///< a bone above all others carries it: the character's own, else one named "Root"
   bool t_pose_clip = false;  ///< the first clip is the T-pose
   bool keep_clips = false;   ///< the file's own animations stay, after ours
-  std::string rights{};      ///< the file's copyright; empty: it says none
+  std::string rights{};      ///< the file's copyright, with that of others in it; empty: it says none
   /// T-pose joints that the screen was bound to, where they are others than the character's.
   std::optional<Joints> joints;
   std::function<void(float)>

@@ -155,10 +155,12 @@ void FrameDecoder::tell(KeypointReading& reading) const {
   if (decided_->scale != Scale::Pixels)
     tell(std::string("places are in ") + (decided_->scale == Scale::Signed ? "-1..1" : "0..1") +
          " of the canvas");
-  tell(short_number(fps_) + " frames/s " +
+  tell(printed("%.6g", fps_) + " frames/s " +
        (options_.fps > 0         ? "as asked"
         : reading.fps_is_guessed ? "assumed"
                                  : "as the file says"));
+  if (!tracker_.believes_ids())
+    tell("two in one frame have the same number, so people are followed by where they are");
   if (left_out_ > 0)
     tell(counted(left_out_, "frame") + (left_out_ == 1 ? " is" : " are") +
          " there twice or out of order and left out, the first of them " + std::to_string(first_left_out_));

@@ -222,7 +222,10 @@ FlatPose pose_of_layout(const KeypointLayout& layout, const FlatPoints& points) 
   FlatPose pose;
   for (int p = 0; p < kBodyPoints; ++p)
     if (layout.body[p] >= 0) pose.body.row(p) = points.row(layout.body[p]);
-  add_middles(pose);
+  FlatPose whole = pose;
+  add_middles(whole);
+  for (const int p : {body25::Neck, body25::MidHip})
+    if (layout.body[p] < 0) pose.body.row(p) = whole.body.row(p);
   pose.left_hand = span(points, layout.left_hand, kHandPoints, kHandPoints);
   pose.right_hand = span(points, layout.right_hand, kHandPoints, kHandPoints);
   pose.face = span(points, layout.face, layout.face_points, kFacePoints);

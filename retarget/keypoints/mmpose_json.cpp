@@ -27,7 +27,7 @@ RawPerson mmpose_person(const PoseJson& json, const std::string& what) {
     }
     person.has_confidence = true;
   }
-  person.id = whole_of(member(json, {"track_id", "instance_id"}));
+  person.id = whole_of(member(json, {"track_id"}));
   const PoseJson* score = member(json, {"bbox_score"});
   if (score && score->is_array()) score = first_of(score);
   person.score = static_cast<float>(std::clamp(number_of(score).value_or(1), 0.0, 1.0));

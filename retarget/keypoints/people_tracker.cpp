@@ -15,6 +15,7 @@ constexpr double kReachPerSecond = 1;
 constexpr double kVelocityKept = 0.3;  // seconds: a person out of sight slows down
 constexpr double kFarAway = 1e3;       // cost of a pair that cannot be; above all others together
 constexpr int kFewFrames = 5;          // seen so shortly, it may have been a false alarm
+constexpr float kSizeOfParts = 5;      // a body is so many hands or faces
 constexpr float kSizeRatio = 1.5f;     // of somebody who comes back
 
 /// Seconds of travel that are left of `unseen` when the velocity decays.
@@ -26,6 +27,15 @@ double reach(double unseen) {
   return kReach + kReachPerSecond * unseen;
 }
 
+/// Around everything that is seen: of some people only a hand or a face is.
+FlatBox whole_box(const FlatPose& pose) {
+  FlatBox box = box_of(pose);
+  for (const FlatPoints* points : {&pose.left_hand, &pose.right_hand, &pose.face})
+    for (Eigen::Index r = 0; r < points->rows(); ++r)
+      if ((*points)(r, 2) > 0) box.extend(Vec2(points->row(r).head<2>()));
+  return box;
+}
+
 bool same_size(float a, float b) {
   return a <= 0 || b <= 0 || (a < kSizeRatio * b && b < kSizeRatio * a);
 }
@@ -35,7 +45,10 @@ bool same_size(float a, float b) {
 /// In lengths of the body: the mean distance of the points seen both times, of the boxes' middles where
 /// there are none; and how much the sizes differ.
 double PeopleTracker::cost(const Path& path, const PersonSighting& person) const {
-  const double size = std::max(1.0f, path.size);
+  const FlatBox before = whole_box(path.pose), now = whole_box(person.pose);
+  if (before.isEmpty() || now.isEmpty()) return kFarAway;
+  const float part = kSizeOfParts * before.diagonal().norm();
+  const double size = std::max(1.0f, path.size > 0 ? path.size : part);
   const auto seconds = static_cast<float>(travelled(path.unseen));
   double sum = 0;
   int common = 0;
@@ -45,8 +58,6 @@ double PeopleTracker::cost(const Path& path, const PersonSighting& person) const
     sum += (expected - person.pose.at(p)).norm();
     ++common;
   }
-  const FlatBox before = box_of(path.pose), now = box_of(person.pose);
-  if (common == 0 && (before.isEmpty() || now.isEmpty())) return kFarAway;
   const double apart = common > 0 ? sum / common : (before.center() - now.center()).norm();
   const float size_now = size_of(person.pose);
   const double sizes = size_now > 0 && path.size > 0 ? std::abs(std::log(size_now / path.size)) : 0;
@@ -139,20 +150,29 @@ void PeopleTracker::forget() {
   paths_.resize(kMostPaths);
 }
 
+/// AlphaPose numbers everybody 0 where it does not follow people.
+void PeopleTracker::check_ids(const std::vector<PersonSighting>& people) {
+  std::set<int64_t> ids;
+  for (const PersonSighting& person : people)
+    if (person.id && !ids.insert(*person.id).second) believes_ids_ = false;
+  if (believes_ids_) return;
+  for (Path& path : paths_) path.has_id = false;
+}
+
 std::vector<int> PeopleTracker::push(const std::vector<PersonSighting>& people, double dt) {
+  if (believes_ids_) check_ids(people);
   for (Path& path : paths_) path.unseen += dt;
   std::vector<int> path_of(people.size(), -1);
   std::vector<char> taken(paths_.size(), 0);
   const bool alone = people.size() == 1;
   for (size_t i = 0; i < people.size(); ++i) {
-    if (!people[i].id) continue;
+    if (!people[i].id || !believes_ids_) continue;
     const auto known = person_of_id_.find(*people[i].id);
     const auto is_it = [&](const Path& path) {
       return known != person_of_id_.end() && path.person == known->second;
     };
     const auto path = std::find_if(paths_.begin(), paths_.end(), is_it);
     const size_t p = static_cast<size_t>(path - paths_.begin());
-    if (path != paths_.end() && taken[p]) continue;  // the same id twice in one frame: the second is followed
     path_of[i] = static_cast<int>(path != paths_.end() ? p : add_path(people[i].id));
     taken.resize(paths_.size(), 0);
     taken[static_cast<size_t>(path_of[i])] = 1;

@@ -28,6 +28,8 @@ class PeopleTracker {
   /// Index of each one's person, 0, 1 ... as they appear; no two are the same. dt: seconds since the last
   /// frame.
   std::vector<int> push(const std::vector<PersonSighting>& people, double dt);
+  /// False: the file's ids were the same for two in one frame.
+  bool believes_ids() const { return believes_ids_; }
   int count() const { return static_cast<int>(numbers_.size()); }
   /// What to call the person: the file's id, else the lowest number from 1 that was free.
   int64_t number(int person) const { return numbers_[static_cast<size_t>(person)]; }
@@ -50,6 +52,7 @@ class PeopleTracker {
              std::vector<char>& taken) const;
   size_t add_path(std::optional<int64_t> id);
   int add_person(std::optional<int64_t> id);
+  void check_ids(const std::vector<PersonSighting>& people);
   void see(Path& path, const PersonSighting& person, bool alone);
   void forget();
 
@@ -58,6 +61,7 @@ class PeopleTracker {
   std::map<int64_t, int> person_of_id_;
   std::set<int64_t> taken_numbers_;
   int64_t next_number_ = 1;
+  bool believes_ids_ = true;
 };
 
 }  // namespace understudy

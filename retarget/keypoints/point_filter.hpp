@@ -28,7 +28,7 @@ class PointFilter {
   Vec2 see(const Vec2& seen, float confidence, float dt, const Noise& noise);
   /// The point is missing: carried on, slowing down, for gap_s. False when it is given up.
   bool miss(float dt, const Noise& noise);
-  Vec2 place() const { return x_; }
+  Vec2 place() const { return shown_; }  ///< what to show
   /// Of a missing point: falls to 0 over gap_s.
   float confidence(const Noise& noise) const;
   int outliers() const { return outliers_; }
@@ -36,7 +36,8 @@ class PointFilter {
   void reset() { *this = PointFilter(); }
 
  private:
-  Vec2 x_ = Vec2::Zero(), v_ = Vec2::Zero();
+  Vec2 show(float dt, const Noise& noise);
+  Vec2 x_ = Vec2::Zero(), v_ = Vec2::Zero(), shown_ = Vec2::Zero();
   float pxx_ = 0, pxv_ = 0, pvv_ = 0;  // covariance
   float surprise_ = 1;                 // mean squared innovation over its expected square
   float confidence_ = 0, unseen_ = 0;

@@ -114,8 +114,9 @@ void read_pose_arrays(const std::string& path, RawSink& sink) {
     const int64_t number = frames ? whole(frames->values[static_cast<size_t>(t)]) : t;
     sink.frame(number, [&, t] {
       RawFrame frame = array_frame(array, shape, t);
-      for (size_t p = 0; people && p < frame.people.size(); ++p)
-        frame.people[p].id = whole(people->values[p]);
+      const float* id = people ? people->values.data() + (each_frame ? t * shape.people : 0) : nullptr;
+      for (RawPerson& person : frame.people)
+        if (id) person.id = whole(*id++);
       return frame;
     });
   }

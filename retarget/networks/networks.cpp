@@ -99,8 +99,10 @@ std::unique_ptr<SkeletonExtractor> load_dense(const NetworkOptions& options, con
 /// One that is figures, or a network's words.
 std::shared_ptr<MotionStyle> load_any_style(const StyleChoice& choice) {
   if (!is_words_file(choice.file)) return load_style(choice);
-  return std::make_shared<SkeletonStyle>(
+  auto style = std::make_shared<SkeletonStyle>(
       std::make_unique<WordsStyle>(plugin().load_words(style_file(choice))), choice.strength);
+  style->set_rights(style_note(choice).rights());
+  return style;
 }
 
 /// At most this many threads of OpenMP: more only cost memory, and a hundred thousand of them the process.

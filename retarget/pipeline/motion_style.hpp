@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "retarget/base/fields.hpp"
 #include "retarget/pipeline/joint_filter.hpp"
@@ -57,6 +58,12 @@ class MotionStyle {
   virtual void finish() = 0;
   /// Seconds by which a frame comes later; 0: at once.
   virtual float lag_s() const = 0;
+  /// What a file that is made in it has to say of rights; empty where there is nothing to be said.
+  const std::string& rights() const { return rights_; }
+  void set_rights(std::string rights) { rights_ = std::move(rights); }
+
+ private:
+  std::string rights_;
 };
 
 /// An observation, dt seconds after the one before.
@@ -78,6 +85,8 @@ class StyledStream {
   std::optional<TimedObservation> pop();
   void finish();
   float lag_s() const { return style_ ? style_->lag_s() : 0; }
+  /// The style's.
+  std::string rights() const { return style_ ? style_->rights() : ""; }
 
  private:
   struct Waiting : TimedObservation {

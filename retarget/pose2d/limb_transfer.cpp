@@ -5,8 +5,6 @@
 namespace understudy {
 namespace {
 
-using namespace body25;
-
 /// A pose as it is being rebuilt: where points of the source go.
 class Rebuilt {
  public:
@@ -61,10 +59,10 @@ Anchor anchor_of(const FlatPose& pose, int point, const BoneLengths& ratio) {
 }
 
 void put_bones(const FlatPose& source, const BoneLengths& ratio, Rebuilt& rebuilt) {
-  if (source.has(MidHip)) {
-    rebuilt.keep(MidHip);
-  } else if (source.has(Neck)) {
-    rebuilt.keep(Neck);
+  if (source.has(body25::MidHip)) {
+    rebuilt.keep(body25::MidHip);
+  } else if (source.has(body25::Neck)) {
+    rebuilt.keep(body25::Neck);
   } else {  // neither: the first point outwards that there is
     for (const FlatBone& bone : kFlatBones)
       if (source.has(bone.to)) {
@@ -78,9 +76,9 @@ void put_bones(const FlatPose& source, const BoneLengths& ratio, Rebuilt& rebuil
     Anchor anchor = anchor_of(source, point, ratio);
     if (anchor.point < 0 || !rebuilt.pose().has(anchor.point)) {
       // A limb that hangs on nothing goes with the first point that was kept.
-      for (const int other :
-           {static_cast<int>(Neck), static_cast<int>(RightShoulder), static_cast<int>(LeftShoulder),
-            static_cast<int>(RightHip), static_cast<int>(LeftHip)})
+      for (const int other : {static_cast<int>(body25::Neck), static_cast<int>(body25::RightShoulder),
+                              static_cast<int>(body25::LeftShoulder), static_cast<int>(body25::RightHip),
+                              static_cast<int>(body25::LeftHip)})
         if (rebuilt.pose().has(other)) {
           anchor = {other, ratio[static_cast<int>(b)]};
           break;
@@ -103,15 +101,19 @@ FlatPose LimbTransfer::transfer(const FlatPose& seen, const Proportions& from, c
   put_bones(source, ratio, rebuilt);
 
   const float head = ratio[flat_bone::Head];
-  const int middle = source.has(Nose) ? Nose : Neck;
-  for (const int point : {RightEye, LeftEye, RightEar, LeftEar}) rebuilt.put(point, middle, head);
+  const int middle = source.has(body25::Nose) ? body25::Nose : body25::Neck;
+  for (const int point : {body25::RightEye, body25::LeftEye, body25::RightEar, body25::LeftEar})
+    rebuilt.put(point, middle, head);
   rebuilt.put_all(source.face, &FlatPose::face, middle, head);
   const float right = (ratio[flat_bone::RightThigh] + ratio[flat_bone::RightShin]) / 2,
               left = (ratio[flat_bone::LeftThigh] + ratio[flat_bone::LeftShin]) / 2;
-  for (const int point : {RightBigToe, RightSmallToe, RightHeel}) rebuilt.put(point, RightAnkle, right);
-  for (const int point : {LeftBigToe, LeftSmallToe, LeftHeel}) rebuilt.put(point, LeftAnkle, left);
-  rebuilt.put_all(source.right_hand, &FlatPose::right_hand, RightWrist, ratio[flat_bone::RightForearm]);
-  rebuilt.put_all(source.left_hand, &FlatPose::left_hand, LeftWrist, ratio[flat_bone::LeftForearm]);
+  for (const int point : {body25::RightBigToe, body25::RightSmallToe, body25::RightHeel})
+    rebuilt.put(point, body25::RightAnkle, right);
+  for (const int point : {body25::LeftBigToe, body25::LeftSmallToe, body25::LeftHeel})
+    rebuilt.put(point, body25::LeftAnkle, left);
+  rebuilt.put_all(source.right_hand, &FlatPose::right_hand, body25::RightWrist,
+                  ratio[flat_bone::RightForearm]);
+  rebuilt.put_all(source.left_hand, &FlatPose::left_hand, body25::LeftWrist, ratio[flat_bone::LeftForearm]);
 
   FlatPose result = rebuilt.pose();
   if (touches_) keep_touches(source, from.length, to.length, result);

@@ -8,8 +8,6 @@
 
 namespace understudy {
 
-using namespace body25;
-
 namespace {
 
 constexpr float kTouches = 0.05f, kLetsGo = 0.1f;  // of the stature
@@ -19,10 +17,11 @@ struct FlatArm {
   flat_bone::Bone upper, fore;
   FlatPoints FlatPose::*hand;
 };
-constexpr std::array<FlatArm, 2> kArms = {{{RightShoulder, RightElbow, RightWrist, flat_bone::RightUpperArm,
-                                            flat_bone::RightForearm, &FlatPose::right_hand},
-                                           {LeftShoulder, LeftElbow, LeftWrist, flat_bone::LeftUpperArm,
-                                            flat_bone::LeftForearm, &FlatPose::left_hand}}};
+constexpr std::array<FlatArm, 2> kArms = {
+    {{body25::RightShoulder, body25::RightElbow, body25::RightWrist, flat_bone::RightUpperArm,
+      flat_bone::RightForearm, &FlatPose::right_hand},
+     {body25::LeftShoulder, body25::LeftElbow, body25::LeftWrist, flat_bone::LeftUpperArm,
+      flat_bone::LeftForearm, &FlatPose::left_hand}}};
 
 /// Where a wrist is wanted, and how much: 0..1.
 struct Wish {
@@ -97,10 +96,10 @@ void keep_touches(const FlatPose& source, const BoneLengths& from, const BoneLen
     return Vec2(ratio * (source.at(pair.wrist) - source.at(pair.other)));
   };
   std::array<Wish, 2> wishes;
-  const auto side_of = [](int wrist) -> size_t { return wrist == RightWrist ? 0 : 1; };
+  const auto side_of = [](int wrist) -> size_t { return wrist == body25::RightWrist ? 0 : 1; };
   for (const HandPair& pair : kHandPairs) {
     const float touch = touch_of(source, pair, stature);
-    if (touch <= 0 || pair.other == LeftWrist) continue;
+    if (touch <= 0 || pair.other == body25::LeftWrist) continue;
     wishes[side_of(pair.wrist)].add(result.at(pair.other) + apart(pair), touch);
   }
   move_arms(wishes, to, result);
@@ -111,10 +110,10 @@ void keep_touches(const FlatPose& source, const BoneLengths& from, const BoneLen
   // Who touches the body stays there, the other hand comes; otherwise both meet half way.
   const float right = wishes[0].most, left = wishes[1].most;
   const float share = (right + 1e-3f) / (right + left + 2e-3f);  // of the left hand's way
-  const Vec2 between = result.at(RightWrist) - result.at(LeftWrist) - apart(hands);
+  const Vec2 between = result.at(body25::RightWrist) - result.at(body25::LeftWrist) - apart(hands);
   std::array<Wish, 2> meet;
-  meet[0].add(result.at(RightWrist) - (1 - share) * between, touch);
-  meet[1].add(result.at(LeftWrist) + share * between, touch);
+  meet[0].add(result.at(body25::RightWrist) - (1 - share) * between, touch);
+  meet[1].add(result.at(body25::LeftWrist) + share * between, touch);
   move_arms(meet, to, result);
 }
 

@@ -51,9 +51,11 @@ bool is_words_file(const std::string& path) {
 std::shared_ptr<MotionStyle> load_style(const StyleChoice& choice) {
   if (!choice.any()) return nullptr;
   const MannerFile file = read_manner(style_file(choice));
-  return std::make_shared<SkeletonStyle>(
+  auto style = std::make_shared<SkeletonStyle>(
       std::make_unique<MannerStyle>(file.manner, choice.posture, choice.size, choice.liveliness),
       choice.strength);
+  style->set_rights(file.note.rights());
+  return style;
 }
 
 }  // namespace understudy

@@ -228,6 +228,13 @@ bool StyleNote::non_commercial() const {
          lower.find("noncommercial") != std::string::npos;
 }
 
+std::string StyleNote::rights() const {
+  if (!non_commercial() && attribution.empty()) return "";
+  const std::string words = "Performed in the style " + label + ", " + licence;
+  return words + (non_commercial() ? " (non-commercial)" : "") +
+         (attribution.empty() ? "" : ", " + attribution);
+}
+
 MannerFile parse_manner(const std::string& source, const std::string& path) {
   const Json json = Json::parse(source, nullptr, false);
   US_CHECK(!json.is_discarded() && json.is_object(), path, ": is not the JSON of a style");

@@ -25,6 +25,8 @@ struct StyleNote {
   std::string made_from;    ///< which recordings or publications
   /// Whether the licence forbids uses for money: its result says so, too.
   bool non_commercial() const;
+  /// What a file that was made in it has to say of rights; empty where there is nothing to be said.
+  std::string rights() const;
 };
 
 struct MannerFile {

@@ -32,6 +32,9 @@
 #include "retarget/formats/npz.hpp"
 #include "retarget/formats/scan_source.hpp"
 #include "retarget/formats/scan_times.hpp"
+#include "retarget/keypoints/keypoint_filter.hpp"
+#include "retarget/keypoints/keypoint_reader.hpp"
+#include "retarget/keypoints/keypoint_writers.hpp"
 #include "retarget/motion/bvh.hpp"
 #include "retarget/motion/read_motion.hpp"
 #include "retarget/networks/weights_layout.hpp"
@@ -68,6 +71,15 @@ size_t text_size(const std::string& bytes) {
 
 size_t bytes_size(const std::string& bytes) {
   return kOfBytes * bytes.size();
+}
+
+// Frames of poses that are missing between numbers take their places, each with its sentence: up to twenty
+// for each frame there is, and a thousand.
+size_t declared_by_poses(const std::string& bytes) {
+  constexpr size_t kMissingFrame = 256, kMost = 20, kAtOnce = 1000;
+  const auto frames = static_cast<size_t>(std::count(bytes.begin(), bytes.end(), '{') +
+                                          std::count(bytes.begin(), bytes.end(), '['));
+  return text_size(bytes) + kMissingFrame * (kMost * frames + kAtOnce);
 }
 
 // A line of a table: a row with a text of its own, which is listed once more where it names nothing.
@@ -423,6 +435,43 @@ void bone_choices(const std::string& bytes) {
   parse_bone_choices(bytes, "map.json");
 }
 
+void check_poses(const KeypointReading& reading) {
+  must(!reading.tracks.empty() && reading.canvas.is_known() && reading.fps > 0, "somebody is on a canvas");
+  const auto frames = static_cast<int64_t>(reading.frames.size());
+  for (int64_t f = 1; f < frames; ++f)
+    must(reading.frames[static_cast<size_t>(f)].number > reading.frames[static_cast<size_t>(f) - 1].number,
+         "numbers rise");
+  for (const KeypointTrack& track : reading.tracks) {
+    int64_t before = -1;
+    for (const TrackedPose& pose : track.poses) {
+      must(pose.frame > before && pose.frame < frames, "a person is in a frame once");
+      must(pose.pose.body.allFinite() && pose.pose.body.col(2).minCoeff() >= 0 &&
+               pose.pose.body.col(2).maxCoeff() <= 1,
+           "points are numbers");
+      before = pose.frame;
+    }
+  }
+  for (const CleanPose& clean : clean_track(reading, reading.performer))
+    must(clean.pose.body.allFinite(), "clean points are numbers");
+}
+
+// As MediaPipe's lists need it: on a canvas that is told. What was read can be written and read again.
+void poses(const std::string& bytes) {
+  KeypointReaderOptions options;
+  options.canvas = {640, 480};
+  const KeypointReading reading = parse_keypoints(bytes, "x.json", options);
+  check_poses(reading);
+  const int64_t frame = reading.performing().poses.front().frame;
+  const KeypointReading again = parse_keypoints(openpose_json(reading, frame), "again", options);
+  must(again.frames.size() == 1, "a frame can be written and read again");
+}
+
+void pose_arrays(const std::string& bytes) {
+  KeypointReaderOptions options;
+  options.canvas = {640, 480};
+  check_poses(read_keypoints(ScratchFile("poses.npz", bytes).path(), options));
+}
+
 /// Every format of the table that holds a mesh: "ply"; "obj_scan", where "obj" reads it as a character.
 void add_mesh_formats(std::vector<Reader>& all) {
   for (const FileFormat& format : file_formats()) {
@@ -458,6 +507,8 @@ std::vector<Reader> all_readers() {
                              {"scan_list", scan_list, text_size},
                              {"scan_times", scan_times, declared_by_table},
                              {"markers", markers, declared_by_table},
+                             {"poses", poses, declared_by_poses},
+                             {"pose_arrays", pose_arrays, declared_by_zip},
                              {"case", test_case, text_size},
                              {"splits", splits, text_size},
                              {"report_rows", report_rows, text_size},

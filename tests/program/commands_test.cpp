@@ -19,7 +19,7 @@ TEST_F(Commands, AllHaveHelp) {
   const Finished all = run_program({"--help"});
   EXPECT_EQ(all.code, 0);
   for (const char* name :
-       {"retarget", "eval", "train", "sample", "doctor", "bench", "demo", "steps", "study"}) {
+       {"retarget", "eval", "train", "sample", "doctor", "bench", "demo", "steps", "study", "sheet"}) {
     EXPECT_NE(all.out.find(name), std::string::npos) << name;
     const Finished help = run_program({name, "--help"});
     EXPECT_EQ(help.code, 0) << name;

@@ -108,8 +108,15 @@ TEST_F(Styling, AStylesLicenceGoesIntoTheFile) {
   mine["attribution"] = "(c) Somebody";
   std::ofstream(scratch.path("mine.json")) << mine.dump();
   ASSERT_EQ(retarget({"--style", scratch.path("mine.json"), "--out", out("mine.glb")}).code, 0);
-  const std::string bytes = read_bytes(out("mine.glb"));
-  EXPECT_NE(bytes.find("CC BY-NC 4.0 (non-commercial), (c) Somebody"), std::string::npos);
+  const std::string rights = "CC BY-NC 4.0 (non-commercial), (c) Somebody";
+  EXPECT_NE(read_bytes(out("mine.glb")).find(rights), std::string::npos);
+  ASSERT_EQ(style({walk(), "--to", scratch.path("mine.json"), "--out", out("own.glb")}).code, 0);
+  EXPECT_NE(read_bytes(out("own.glb")).find(rights), std::string::npos);
+  const Finished told = style({walk(), "--to", scratch.path("mine.json"), "--out", out("own.bvh")});
+  EXPECT_NE(told.err.find("no place for its rights: Performed in the style Happy, " + rights),
+            std::string::npos)
+      << told.err;
+  EXPECT_EQ(style({walk(), "--to", "happy", "--out", out("free.bvh")}).err.find("rights"), std::string::npos);
 }
 
 TEST_F(Styling, OneIsTaughtFromTwoFoldersAndPerformedIn) {
@@ -157,7 +164,9 @@ TEST_F(Styling, AStyleIsJudgedOnCasesOfTheSuite) {
   EXPECT_EQ(plain["style_share"]["mean"], 0) << plain.dump();
   EXPECT_EQ(plain["jerk_ratio"]["mean"], 1);
   EXPECT_LT(plain["dtw_deg"]["mean"], 0.1);
-  const Json styled = figures({"--style", out("dance.json"), "--style-back", out("dance.json")});
+  const Json styled = figures(
+      {"--style", out("dance.json"), "--style-back", out("dance.json"), "--pictures", out("pictures")});
+  EXPECT_TRUE(std::filesystem::exists(out("pictures/style_figures.png")));
   EXPECT_EQ(styled["style_share"]["mean"], 100) << styled.dump();
   EXPECT_GT(styled["dtw_deg"]["mean"], 3);
   EXPECT_TRUE(styled.contains("cycle_share"));

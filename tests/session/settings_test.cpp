@@ -197,6 +197,11 @@ TEST(SeriesTest, AreWrittenAFrameARow) {
             "0,0,0.1,2\n"
             "1,0.033333,,\n"
             "2,0.066667,1e-08,\n");
+  write_csv(path, {{"jerk", "Jerk", "m/s3", {1, 2}}}, 30, {0, 0.5});
+  EXPECT_EQ(tests::read_bytes(path),
+            "frame,seconds,take_seconds,jerk\n"
+            "0,0,0,1\n"
+            "1,0.033333,0.5,2\n");
   write_csv(path, {}, 30);
   EXPECT_EQ(tests::read_bytes(path), "frame,seconds\n");
   EXPECT_THROW(write_csv(path, {}, 0), Error);

@@ -4,7 +4,10 @@
 #include "app/session/command_sets.hpp"
 #include "app/session/take_export.hpp"
 #include "retarget/base/error.hpp"
+#include "retarget/base/file.hpp"
+#include "retarget/base/index.hpp"
 #include "retarget/math/rotation.hpp"
+#include "retarget/style/manner_file.hpp"
 #include "tests/session/studio_fixture.hpp"
 
 namespace understudy::app {
@@ -61,6 +64,20 @@ TEST_F(PerformanceTest, AStyleChangesThePosesNotTheFramesAndIsUndone) {
   EXPECT_TRUE(same_poses(state().shown, before));
 }
 
+TEST_F(PerformanceTest, AStyleAsksForNoNewSkeletons) {
+  Studio scans(services());
+  open_both(scans);
+  const int extracted = *extractions_;
+  ASSERT_GE(extracted, kFrames);
+  for (const char* const strength : {"1", "0.5", "0"}) {
+    scans.run("method.style", {"0", "child"});
+    scans.run("method.style_strength", {"0", strength});
+    scans.wait_idle();
+    EXPECT_EQ(ssize(scans.session().takes[0].performed), kFrames);
+  }
+  EXPECT_EQ(*extractions_, extracted);
+}
+
 TEST_F(PerformanceTest, AStrengthOutOfRangeIsBroughtInto) {
   run("method.style", {"0", "child"});
   run("method.style_strength", {"0", "7"});
@@ -89,6 +106,39 @@ TEST_F(PerformanceTest, AStylesFileThatIsGoneEndsThatTakeAlone) {
   EXPECT_NE(state(0).problem.find("mine.json: there is no such file"), std::string::npos) << state(0).problem;
   EXPECT_TRUE(state(1).problem.empty());
   EXPECT_FALSE(state(1).shown.poses.empty());
+}
+
+TEST_F(PerformanceTest, TheRightsOfAStyleGoIntoWhatIsExported) {
+  const auto with_rights = [&](const std::string& name, const std::string& licence,
+                               const std::string& whose) {
+    MannerFile file = read_manner(US_SOURCE_DIR "/assets/styles/old.json");
+    file.note.label = name, file.note.licence = licence, file.note.attribution = whose;
+    std::ofstream(path(name + ".json")) << to_json(file);
+    return path(name + ".json");
+  };
+  const auto exported = [&](const std::string& file, const Arguments& more = {}) {
+    Arguments arguments = {"0", path(file)};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    run("export.run", arguments);
+    return read_file(path(file));
+  };
+  const auto has = [](const std::string& file, const std::string& words) {
+    return file.find(words) != std::string::npos;
+  };
+  EXPECT_FALSE(has(exported("plain.glb"), "copyright"));
+  run("method.style", {"0", with_rights("bought", "CC BY-NC 4.0", "")});
+  const std::string bought = "Performed in the style bought, CC BY-NC 4.0 (non-commercial)";
+  EXPECT_TRUE(has(exported("bought.glb"), "\"copyright\":\"" + bought + "\""));
+  run("compare.add", {"0", "style=" + with_rights("lent", "CC BY 4.0", "by Somebody")});
+  run("take.rename", {"1", "other"});
+  const std::string lent = "Performed in the style lent, CC BY 4.0, by Somebody";
+  EXPECT_TRUE(has(exported("both.glb", {"take=other"}), bought + "; " + lent)) << "clips of one file";
+  run("export.all", {path("all"), "format=glb"});
+  EXPECT_TRUE(has(read_file(path("all/target.glb")), bought));
+  EXPECT_FALSE(has(read_file(path("all/target.glb")), lent));
+  EXPECT_TRUE(has(read_file(path("all/other.glb")), lent));
+  run("method.style", {"0", "old"});
+  EXPECT_FALSE(has(exported("free.glb"), "copyright")) << "its own licence asks for nothing";
 }
 
 TEST_F(PerformanceTest, ATakeInAStyleIsComparedWithOneWithout) {
@@ -129,6 +179,55 @@ TEST_F(PerformanceTest, PlaybackGoesAtTheTempo) {
   s.run("playback.toggle");
   s.tick(0.5, 0.5);
   EXPECT_NEAR(s.session().playback.frame, s.session().source.fps, 2);
+}
+
+TEST_F(PerformanceTest, TheClockIsTheCurrentTakesAndAllViewsShowTheSameMomentOfTheAction) {
+  Studio& s = *studio;
+  run("edit.tempo", {"0", "2"});
+  run("edit.tempo_phase", {"0", "stroke", "0.6"});
+  run("compare.add", {"0"});
+  run("edit.tempo", {"1", "off"});
+  s.run("view.pane", {"1"});
+  ASSERT_EQ(s.session().selected_take, 0);
+  for (const int frame : {0, 1, 40, 99}) {
+    const double moment = moment_of(s.session(), frame);
+    EXPECT_EQ(moment, state().times[static_cast<size_t>(frame)]);
+    s.run("playback.seek", {std::to_string(moment + 1e-4)});
+    EXPECT_EQ(shown_frame(s.session()), frame);
+  }
+  const int frame = shown_frame(s.session());
+  s.run("view.pane", {"2"});
+  EXPECT_EQ(shown_frame(s.session()), frame) << "the same moment of the action";
+  EXPECT_DOUBLE_EQ(moment_of(s.session(), frame), frame / s.session().source.fps);
+  // Playback goes by the clock.
+  for (const char* const pane : {"1", "2"}) {
+    s.run("view.pane", {pane});
+    s.run("playback.frame", {"10"});
+    s.run("playback.play");
+    const double began = moment_of(s.session(), s.session().playback.frame);
+    for (int i = 0; i < 50; ++i) s.tick(0.01, 0.01);
+    EXPECT_NEAR(moment_of(s.session(), s.session().playback.frame), began + 0.5, 0.02) << pane;
+    s.run("playback.pause");
+  }
+}
+
+TEST_F(PerformanceTest, TheTableOfFiguresHasTheStylesInBothTimes) {
+  run("method.style", {"0", "child"});
+  const auto table = [&] {
+    run("export.csv", {"0", path("figures.csv")});
+    return read_file(path("figures.csv"));
+  };
+  const auto turn = [&] { return find(state().series, "head_turn")->values[40]; };
+  const std::string plain = table();
+  EXPECT_EQ(plain.rfind("frame,seconds,confidence", 0), 0u) << plain.substr(0, 100);
+  EXPECT_NE(plain.find("head_turn"), std::string::npos);
+  EXPECT_NE(plain.find("pelvis_speed"), std::string::npos);
+  const float before = turn();
+  run("edit.tempo", {"0", "2"});
+  EXPECT_NEAR(turn(), before / 2, 1e-3f * before) << "as it is seen";
+  const std::string slow = table();
+  EXPECT_EQ(slow.rfind("frame,seconds,take_seconds,confidence", 0), 0u) << slow.substr(0, 100);
+  EXPECT_NE(slow.find("\n30,1,2,"), std::string::npos) << "at 30 frames/s";
 }
 
 TEST_F(PerformanceTest, MomentsAreHeldAndShiftedAndNotTurnedBack) {

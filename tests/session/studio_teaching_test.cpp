@@ -4,6 +4,7 @@
 #include <thread>
 
 #include "retarget/base/error.hpp"
+#include "retarget/base/file.hpp"
 #include "retarget/body/builtin_motion.hpp"
 #include "retarget/formats/motion_writers.hpp"
 #include "retarget/math/rotation.hpp"
@@ -92,7 +93,7 @@ class TeachingTest : public StudioTest {
 TEST_F(TeachingTest, AStyleIsKeptListedAndPerformedAndUndone) {
   const Motion before = shown();
   const double apart = wrists_apart();
-  teach({"made_from=an actor", "licence=CC BY-NC 4.0"});
+  teach({"made_from=an actor", "licence=CC BY-NC 4.0", "attribution=(c) Somebody"});
   ASSERT_TRUE(studio->session().errors.empty()) << studio->session().errors.front().text;
   EXPECT_EQ(style().file, file("wide arms"));
   const auto& taught = studio->session().styles.taught;
@@ -100,6 +101,8 @@ TEST_F(TeachingTest, AStyleIsKeptListedAndPerformedAndUndone) {
   EXPECT_EQ(taught[0].note.label, "wide arms");
   EXPECT_EQ(taught[0].note.made_from, "an actor");
   EXPECT_TRUE(taught[0].note.non_commercial());
+  EXPECT_EQ(studio->session().takes[0].rights,
+            "Performed in the style wide arms, CC BY-NC 4.0 (non-commercial), (c) Somebody");
   EXPECT_FALSE(same_poses(shown(), before));
   EXPECT_GT(wrists_apart(), apart + 0.15);
   ASSERT_FALSE(studio->session().notices.empty());
@@ -149,6 +152,42 @@ TEST_F(TeachingTest, ItIsForgottenOnceNoTakeHasIt) {
   EXPECT_EQ(forget("wide arms"), "");
   EXPECT_FALSE(fs::exists(file("wide arms")));
   EXPECT_TRUE(studio->session().styles.taught.empty());
+}
+
+TEST_F(TeachingTest, WhatWasForgottenLastIsBroughtBack) {
+  const auto restore = [&](const std::string& name) {
+    return failure_of([&] { studio->run("style.restore", {name}); });
+  };
+  EXPECT_EQ(restore("wide arms"), "the style 'wide arms' was not forgotten last");
+  teach();
+  const Motion wide = shown();
+  const std::string text = read_file(file("wide arms"));
+  studio->run("method.style", {"0", "none"});
+  studio->wait_idle();
+  studio->run("style.forget", {"wide arms"});
+  const Notice& notice = studio->session().notices.back();
+  EXPECT_EQ(notice.text, "The style 'wide arms' was forgotten");
+  EXPECT_EQ(notice.offer.label, "Undo");
+  EXPECT_EQ(notice.offer.command, "style.restore \"wide arms\"");
+  studio->run("edit.undo");  // the take has it again, and there is none
+  studio->wait_idle();
+  EXPECT_NE(studio->session().takes[0].problem.find("there is no such file"), std::string::npos);
+  EXPECT_EQ(restore("wide arms"), "");
+  studio->wait_idle();
+  EXPECT_EQ(read_file(file("wide arms")), text);
+  EXPECT_NE(taught_style(studio->session().styles, "wide arms"), nullptr);
+  EXPECT_TRUE(studio->session().takes[0].problem.empty()) << "it performs in it again";
+  EXPECT_TRUE(same_poses(shown(), wide));
+  EXPECT_NE(restore("wide arms"), "") << "once";
+}
+
+TEST_F(TeachingTest, AForgottenStyleDoesNotReplaceANewOne) {
+  teach();
+  studio->run("method.style", {"0", "none"});
+  studio->run("style.forget", {"wide arms"});
+  teach();
+  EXPECT_EQ(failure_of([&] { studio->run("style.restore", {"wide arms"}); }),
+            "there is another style 'wide arms' by now");
 }
 
 TEST_F(TeachingTest, JointsThatAreLeftOutStayTheSources) {

@@ -40,6 +40,19 @@ TEST_F(PerformanceSection, AStyleIsTaughtAndMeanwhileItsJobIsShown) {
   expect_click("performance.teaching.cancel", {"job.cancel 9"});
 }
 
+TEST_F(PerformanceSection, ItTellsWhatIsSeenBesideATakeOfAnotherTempo) {
+  ASSERT_EQ(session.document.takes.size(), 2u);
+  click("inspector.tempo");
+  frame(2);
+  EXPECT_FALSE(shown("tempo.beside"));
+  session.document.takes[1].pose_edits.tempo = TempoEdit{};
+  frame(2);
+  EXPECT_TRUE(shown("tempo.beside"));
+  session.document.takes.resize(1);
+  frame(2);
+  EXPECT_FALSE(shown("tempo.beside"));
+}
+
 class TeachDialog : public WorkspaceTest {
  protected:
   TeachDialog() {
@@ -78,6 +91,7 @@ TEST_F(TeachDialog, ANameThatIsNoneOrTakenIsToldAtOnce) {
   frame(2);
   EXPECT_FALSE(shown("teach_style.problem"));
   EXPECT_FALSE(mark("teach_style.apply").enabled) << "there is one of that name";
+  EXPECT_FALSE(shown("teach_style.restore"));
   click("teach_style.forget");
   EXPECT_EQ(take_log(), Lines{"style.forget mine"});
   click("teach_style.replace");
@@ -85,6 +99,32 @@ TEST_F(TeachDialog, ANameThatIsNoneOrTakenIsToldAtOnce) {
   click("teach_style.apply");
   EXPECT_EQ(take_log(),
             Lines{"style.teach /data/adults /data/children mine \"licence=own recordings\" replace=1"});
+}
+
+TEST_F(TeachDialog, AForgottenStyleIsOfferedBackUnderItsName) {
+  session.styles.taught.clear();
+  session.styles.forgotten = app::ForgottenStyle{"mine", "/home/me/my styles/mine.json", "{}"};
+  fill("another");
+  EXPECT_FALSE(shown("teach_style.restore"));
+  write_into("teach_style.name", "mine");
+  frame(2);
+  EXPECT_FALSE(shown("teach_style.forget"));
+  click("teach_style.restore");
+  EXPECT_EQ(take_log(), Lines{"style.restore mine"});
+}
+
+TEST_F(TeachDialog, WhatAFolderHoldsIsToldOnceItIsTyped) {
+  write_into("teach_style.from", US_SOURCE_DIR "/assets/samples/scan");
+  EXPECT_FALSE(shown("teach_style.from.holds")) << "it may be typed on";
+  for (int i = 0; i < 2000 && !shown("teach_style.from.holds"); ++i) frame(1);
+  EXPECT_TRUE(shown("teach_style.from.holds"));
+  EXPECT_FALSE(shown("teach_style.to.holds"));
+  write_into("teach_style.licence", "CC BY 4.0");
+  write_into("teach_style.attribution", "Somebody");
+  fill("as they do");
+  click("teach_style.apply");
+  EXPECT_EQ(take_log(), Lines{"style.teach /data/adults /data/children \"as they do\" \"licence=CC BY 4.0\" "
+                              "attribution=Somebody"});
 }
 
 TEST_F(TeachDialog, AFolderIsChosenAndTheDialogComesBack) {

@@ -21,7 +21,8 @@ struct StyleList {
 };
 
 std::string licence_words(const StyleNote& note) {
-  return note.licence + (note.non_commercial() ? ", non-commercial" : "");
+  const std::string words = note.licence + (note.non_commercial() ? ", non-commercial" : "");
+  return words + (note.attribution.empty() ? "" : ", " + note.attribution);
 }
 
 /// Those that come with the program, then those that were taught, then a file that is neither.
@@ -29,7 +30,8 @@ void draw_style_choice(const StyleList& list, const app::StylesState& kept, cons
                        PanelContext& context, const std::string& k) {
   std::vector<std::string> words = {"none"}, labels = {"None"}, tips = {"As the source moves"};
   const auto add = [&](const StyleNote& note, const std::string& word) {
-    words.push_back(word), labels.push_back(note.label);
+    words.push_back(word);
+    labels.push_back(note.label + (note.non_commercial() ? ", non-commercial" : ""));
     tips.push_back(note.sentence + ". Made from: " + note.made_from + ". Licence: " + licence_words(note));
   };
   for (const StyleNote& note : list.notes) add(note, note.name);
@@ -111,6 +113,16 @@ void draw_length(const app::TakeState* state, double fps, Ui& ui) {
   row_text(ui, "Lasts", figure(state->times.back(), "s") + " of " + figure(before, "s"));
 }
 
+/// Of several takes of which one at least has a tempo: how they are seen beside each other.
+void draw_beside(const app::Session& session, Ui& ui) {
+  const auto& takes = session.document.takes;
+  const auto has_tempo = [](const app::Take& take) { return take.pose_edits.tempo.has_value(); };
+  if (takes.size() < 2 || std::none_of(takes.begin(), takes.end(), has_tempo)) return;
+  hint(ui,
+       "All views show the same moment of the action; playback and clock go at the current take's tempo.");
+  ui.mark("tempo.beside");
+}
+
 void draw_tempo(const app::Session& session, const app::Take& take, PanelContext& context) {
   Ui& ui = context.ui;
   if (!section(ui, "inspector.tempo", take_title(session, "Tempo"), false)) return;
@@ -130,6 +142,7 @@ void draw_tempo(const app::Session& session, const app::Take& take, PanelContext
              !tempo      ? "off"
              : is_number ? number
                          : "body");
+  draw_beside(session, ui);
   if (!tempo) return;
   if (is_number)
     ask_number(context,

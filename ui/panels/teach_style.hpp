@@ -1,16 +1,28 @@
 // The dialog that teaches a style: from recordings of how somebody moves now, and of how they shall move.
-// Marks: teach_style.from, .to (.browse), .name, .licence, .joints (.K), .replace, .forget, .problem,
-// .consent, .apply, .cancel.
+// Marks: teach_style.from, .to (.browse, .holds), .name, .licence, .attribution, .joints (.K), .replace,
+// .forget, .restore, .problem, .consent, .apply, .cancel.
 #pragma once
 
+#include <memory>
 #include <string>
 
+#include "app/run/recordings_look.hpp"
 #include "ui/panels/files.hpp"
 
 namespace understudy::ui {
 
+/// A folder as it is typed, and what is in it once it is typed.
+struct TaughtFolder {
+  std::string path;
+  std::string seen;       ///< the path of the frame before
+  double seen_since = 0;  ///< ImGui's seconds
+  std::string looked_at;
+  std::unique_ptr<app::RecordingsLook> look;  ///< null: at none yet
+};
+
 struct TeachState {
-  std::string from, to, name, licence = "own recordings";
+  TaughtFolder from, to;
+  std::string name, licence = "own recordings", attribution;
   int joints = 0;                ///< a row of the table in teach_style.cpp
   bool replace = false;          ///< the style of that name
   bool browses_to = false;       ///< which folder the browser is open for

@@ -128,8 +128,9 @@ void draw_readout(const app::Session& session, PanelContext& context) {
   ImGui::SameLine(0, 0);
   ImGui::SetCursorPosX(ImGui::GetWindowWidth() - ui.px(12 + 76));
   ImGui::BeginChild("##time", {ui.px(76), height});
-  const double seconds = std::max(frame, 0) / frames_per_second(session);
-  const auto time = committed_text(ui, "timeline.time", clock_time(seconds));
+  const auto time =
+      committed_text(ui, "timeline.time", clock_time(app::moment_of(session, std::max(frame, 0))));
+  if (!app::clock_times(session).empty()) tooltip(ui, "Of the current take, at its tempo");
   ImGui::EndChild();
   if (!time) return;
   const size_t colon = time->find(':');
@@ -171,6 +172,7 @@ void draw_track(const app::Session& session, PanelContext& context, const Timeli
   data.processed = app::frame_count(session);
   data.current = std::max(0, app::shown_frame(session));
   data.fps = frames_per_second(session);
+  data.times = app::clock_times(session);
   const app::FrameRange range = app::play_range(session.playback, data.processed);
   const bool marked = session.playback.in >= 0 || session.playback.out >= 0;
   if (marked && !range.empty()) data.loop = LoopRange{range.first, range.last};

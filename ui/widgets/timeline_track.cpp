@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "retarget/base/index.hpp"
 #include "retarget/base/text.hpp"
 #include "ui/gui/gui.hpp"
 
@@ -441,7 +442,9 @@ void draw_hover(Track& t, int frame) {
   t.list.AddLine({x, t.body.min.y}, {x, t.body.max.y}, color(t.ui.theme().text_dim, 0.6f));
   ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {t.ui.px(9), t.ui.px(6)});
   ImGui::BeginTooltip();
-  ImGui::Text("Frame %d  %s", frame, clock_time(frame / std::max(t.data.fps, 1e-3)).c_str());
+  const double* const moment = at_or_null(t.data.times, frame);
+  const double seconds = moment != nullptr ? *moment : frame / std::max(t.data.fps, 1e-3);
+  ImGui::Text("Frame %d  %s", frame, clock_time(seconds).c_str());
   ImGui::PushStyleColor(ImGuiCol_Text, t.ui.theme().text_dim);
   if (frame >= t.data.processed) ImGui::TextUnformatted("not processed yet");
   if (t.data.kept && (frame < t.data.kept->first || frame > t.data.kept->last))

@@ -52,6 +52,7 @@ struct TrackData {
   int processed = 0;  ///< frames 0..processed-1 are finished
   int current = 0;
   double fps = 30;
+  std::vector<double> times;  ///< when each frame is, seconds; empty: evenly, at `fps`
   std::optional<LoopRange> loop;
   std::vector<int> bad_frames;
   Values curve;                 ///< drawn inside, one value a frame

@@ -98,6 +98,46 @@ TEST(ContactSheet, StraysDoNotMakeEveryoneSmall) {
   EXPECT_EQ(contact_sheet(clean, red(400)).height, contact_sheet(strayed, red(400)).height);
 }
 
+/// A pear of each height, walking, until its end.
+std::vector<StripRow> strip_rows(const std::vector<float>& heights, size_t moments) {
+  std::vector<StripRow> rows;
+  for (const float height : heights) {
+    rows.push_back({"pear", std::vector<StripMoment>(moments), Vec3(0.9f, 0.02f, 0.02f)});
+    for (size_t i = 0; i < moments; ++i) {
+      rows.back().moments[i].mesh = make_pear(40, 56, height);
+      rows.back().moments[i].mesh.vertices.col(2).array() += 0.6f * static_cast<float>(i);
+    }
+  }
+  return rows;
+}
+
+TEST(Strip, HasARowForEachPerformerAtOneScaleAndAColumnForEachTime) {
+  const Image image = strip(strip_rows({1.75f, 1.1f}, 3), {0, 0.5, 1}, {"", 700});
+  const auto rows = red_runs(image, true);
+  ASSERT_EQ(rows.size(), 2u);
+  EXPECT_EQ(red_runs(image, false).size(), 3u);
+  const auto height = [&](size_t row) { return static_cast<float>(rows[row].second - rows[row].first + 1); };
+  EXPECT_NEAR(height(1) / height(0), 1.1f / 1.75f, 0.05f);
+}
+
+TEST(Strip, AtOneTimePerformersStandSideBySide) {
+  const Image image = strip(strip_rows({1.75f, 1.1f, 1.2f}, 1), {0.5}, {"", 700});
+  EXPECT_EQ(red_runs(image, true).size(), 1u);
+  EXPECT_EQ(red_runs(image, false).size(), 3u);
+}
+
+TEST(Strip, WhoHasEndedIsNotShown) {
+  auto rows = strip_rows({1.75f, 1.75f}, 3);
+  rows[0].moments[2] = rows[1].moments[2] = {};
+  EXPECT_EQ(red_runs(strip(rows, {0, 1, 2}, {"", 700}), false).size(), 2u);
+}
+
+TEST(Strip, RefusesNobodyAndAnotherNumberOfMoments) {
+  EXPECT_THROW(strip({}, {0, 1}), Error);
+  EXPECT_THROW(strip({{"nobody", std::vector<StripMoment>(2)}}, {0, 1}), Error);
+  EXPECT_THROW(strip(strip_rows({1.75f}, 3), {0, 1}), Error);
+}
+
 TEST(ContactSheet, RefusesNothingAndNoRoom) {
   EXPECT_THROW(contact_sheet(std::vector<SheetMoment>{}), Error);
   EXPECT_THROW(contact_sheet(std::vector<SheetMoment>(2)), Error);

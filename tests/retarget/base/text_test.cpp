@@ -36,6 +36,11 @@ TEST(Text, ItemsAreJoinedWithCommas) {
   EXPECT_EQ(list, "a, b, c");
 }
 
+TEST(Text, AListHasEachItemOnce) {
+  EXPECT_EQ(joined_once({"b", "", "a", "b"}, "; "), "b; a");
+  EXPECT_EQ(joined_once({}), "");
+}
+
 TEST(Text, LargeNumbersAreGroupedByThousands) {
   EXPECT_EQ(grouped(12345678), "12,345,678");
   EXPECT_EQ(grouped(-123), "-123");

@@ -1,0 +1,212 @@
+#include "app/run/flat_performance.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <utility>
+
+#include "app/run/interrupt.hpp"
+#include "app/run/report.hpp"
+#include "retarget/base/error.hpp"
+#include "retarget/base/file.hpp"
+#include "retarget/base/text.hpp"
+#include "retarget/character/picture.hpp"
+#include "retarget/keypoints/keypoint_writers.hpp"
+#include "retarget/pose2d/limb_transfer.hpp"
+#include "retarget/pose2d/proportion_estimate.hpp"
+
+namespace understudy::app {
+namespace {
+namespace fs = std::filesystem;
+
+constexpr const char* kFormat = "understudy_proportions";
+constexpr int kFormatVersion = 1;
+constexpr uint64_t kLargestProportions = 1 << 20;
+constexpr float kUncertain = 0.12f;  // of a length's logarithm
+
+std::optional<Canvas> canvas_of_picture(const std::string& path) {
+  try {
+    const Pixels pixels = decode_picture(read_file(path));
+    return Canvas{pixels.width, pixels.height};
+  } catch (const Error&) {
+    return std::nullopt;
+  }
+}
+
+/// The pose in which most is seen; of equal ones the first.
+const FlatPose& clearest_pose(const KeypointTrack& track) {
+  const auto best = std::max_element(
+      track.poses.begin(), track.poses.end(),
+      [](const TrackedPose& a, const TrackedPose& b) { return points_seen(a.pose) < points_seen(b.pose); });
+  return best->pose;
+}
+
+/// "from 12 poses", and which bones nobody can be sure of.
+std::string about(const Proportions& lengths) {
+  std::string doubtful;
+  for (int b = 0; b < kFlatBoneCount; ++b)
+    if (lengths.doubt[b] > kUncertain)
+      append_item(doubtful, lower_case(kFlatBones[static_cast<size_t>(b)].label));
+  const std::string poses = lengths.poses == 1 ? "one pose" : grouped(lengths.poses) + " poses";
+  return "from " + poses + (doubtful.empty() ? "" : "; uncertain: " + doubtful);
+}
+
+/// Before the frame they were not known.
+Proportions known_by_now(const ProportionEstimate& estimate) {
+  return estimate.poses() > 0 ? estimate.lengths() : Proportions{};
+}
+
+void look_at(const FlatPose& pose, const LengthReader& lengths, ProportionEstimate& estimate) {
+  if ((seen_lengths(pose) > 0).count() >= 3) estimate.push(pose, lengths.read(pose));
+}
+
+KeypointReading empty_result(const KeypointReading& source, const FlatTarget& target, FlatPlace place) {
+  KeypointReading result;
+  result.format = source.format;
+  result.layout = source.layout;
+  const bool there = place == FlatPlace::Reference && target.standing;
+  result.canvas = there && target.canvas.is_known() ? target.canvas : source.canvas;
+  result.fps = source.fps;
+  result.frames = source.frames;
+  for (KeypointFrame& frame : result.frames) frame.problem.clear();
+  result.tracks.resize(1);
+  result.tracks[0].person = 1;
+  return result;
+}
+
+}  // namespace
+
+KeypointReading open_keypoints(const FlatSourceOptions& options) {
+  KeypointReaderOptions reading;
+  reading.canvas = options.canvas;
+  reading.fps = options.fps;
+  reading.layout = options.layout;
+  reading.picture_size = canvas_of_picture;
+  if (!options.person.empty()) {
+    int64_t person = 0;
+    US_CHECK(parse_integer(options.person, person), "a person of 2D poses is a number, not '", options.person,
+             "'");
+    reading.person = person;
+  }
+  return read_keypoints(options.path, reading);
+}
+
+Proportions proportions_of(const KeypointReading& reading, const LengthReader& lengths) {
+  ProportionEstimate estimate;
+  for (const TrackedPose& tracked : reading.performing().poses) {
+    FlatPose pose = tracked.pose;
+    add_middles(pose);
+    look_at(pose, lengths, estimate);
+  }
+  US_CHECK(estimate.poses() > 0, reading.path, ": nobody is seen well enough to tell their proportions");
+  return estimate.lengths();
+}
+
+bool is_proportions_file(const std::string& path) {
+  std::error_code failed;
+  if (!fs::is_regular_file(path, failed) || fs::file_size(path, failed) > kLargestProportions) return false;
+  const Json json = Json::parse(read_file(path), nullptr, false);
+  return json.is_object() && json.contains(kFormat);
+}
+
+void write_proportions(const std::string& path, const Proportions& lengths) {
+  Json bones;
+  for (size_t b = 0; b < kFlatBones.size(); ++b)
+    bones[kFlatBones[b].name] = {{"length", lengths.length[static_cast<int>(b)]},
+                                 {"doubt", lengths.doubt[static_cast<int>(b)]}};
+  write_json(path,
+             {{kFormat, kFormatVersion}, {"unit", "pixels"}, {"poses", lengths.poses}, {"bones", bones}});
+}
+
+Proportions read_proportions(const std::string& path) {
+  US_CHECK(fs::file_size(path) <= kLargestProportions, path, ": too large for proportions");
+  const Json json = Json::parse(read_file(path), nullptr, false);
+  US_CHECK(json.is_object() && json.contains(kFormat) && json[kFormat] == kFormatVersion, path,
+           ": no proportions of version ", kFormatVersion);
+  Proportions lengths;
+  const auto number = [&](const Json& of, const char* key, const std::string& name, double most) {
+    US_CHECK(of.is_object() && of.contains(key) && of[key].is_number() && of[key].get<double>() >= 0 &&
+                 of[key].get<double>() <= most,
+             path, ": ", key, " of ", name, " is no number from 0 to ", most);
+    return of[key].get<float>();
+  };
+  if (json.contains("poses")) lengths.poses = static_cast<int>(number(json, "poses", "the person", 1e9));
+  for (size_t b = 0; b < kFlatBones.size(); ++b) {
+    const std::string name = kFlatBones[b].name;
+    US_CHECK(json.contains("bones") && json["bones"].is_object() && json["bones"].contains(name), path,
+             ": has no ", name);
+    const Json& bone = json["bones"][name];
+    lengths.length[static_cast<int>(b)] = number(bone, "length", name, kLargestCanvas);
+    US_CHECK(lengths.length[static_cast<int>(b)] > 0, path, ": the length of ", name, " is 0");
+    lengths.doubt[static_cast<int>(b)] = bone.contains("doubt") ? number(bone, "doubt", name, 100) : 0;
+  }
+  return lengths;
+}
+
+FlatTarget open_flat_target(const FlatSourceOptions& options, const LengthReader& lengths,
+                            std::vector<std::string>& told) {
+  FlatTarget target;
+  if (is_proportions_file(options.path)) {
+    target.lengths = read_proportions(options.path);
+    told.push_back("the target is proportions alone: it stands where the source stands");
+    return target;
+  }
+  const KeypointReading reading = open_keypoints(options);
+  told.insert(told.end(), reading.told.begin(), reading.told.end());
+  target.lengths = proportions_of(reading, lengths);
+  FlatPose standing = clearest_pose(reading.performing());
+  add_middles(standing);
+  target.standing = standing;
+  target.canvas = reading.canvas;
+  told.push_back("the target's proportions are " + about(target.lengths));
+  return target;
+}
+
+FlatPerformance perform_flat(const FlatOptions& options, const LengthReader& lengths,
+                             const std::function<void(float)>& progress) {
+  FlatPerformance made;
+  made.source = open_keypoints(options.source);
+  made.told = made.source.told;
+  const FlatTarget target = open_flat_target(options.target, lengths, made.told);
+  made.target_lengths = target.lengths;
+  if (options.ahead) {
+    made.source_lengths = proportions_of(made.source, lengths);
+    made.told.push_back("the source's proportions are " + about(made.source_lengths) +
+                        ", read off the whole file before its first frame");
+  }
+  KeypointFilterOptions filter;
+  filter.smoothing = options.smoothing;
+  const std::vector<CleanPose> clean = clean_track(made.source, made.source.performer, filter);
+  FlatRetargeter retargeter(std::make_unique<LimbTransfer>(options.touches), target, options.place);
+  made.result = empty_result(made.source, target, options.place);
+  ProportionEstimate estimate;
+  for (size_t frame = 0; frame < clean.size(); ++frame) {
+    check_interrupt("before frame " + std::to_string(frame));
+    if (!options.ahead && clean[frame].is_usable) look_at(clean[frame].pose, lengths, estimate);
+    const Proportions source = options.ahead ? made.source_lengths : known_by_now(estimate);
+    TrackedPose out;
+    out.frame = static_cast<int64_t>(frame);
+    if (options.ahead || estimate.poses() > 0) out.pose = retargeter.push(clean[frame], source);
+    made.result.frames[frame].problem = clean[frame].problem;
+    made.flagged += clean[frame].is_usable ? 0 : 1;
+    if (!is_nobody(out.pose)) made.result.tracks[0].poses.push_back(std::move(out));
+    if (progress) progress(static_cast<float>(frame + 1) / static_cast<float>(clean.size()));
+  }
+  if (!options.ahead) made.source_lengths = known_by_now(estimate);
+  return made;
+}
+
+void write_flat(const std::string& path, const KeypointReading& reading) {
+  const std::string suffix = file_suffix(path);
+  if (suffix == ".json")
+    write_controlnet(path, reading);
+  else if (suffix == ".csv")
+    write_keypoint_csv(path, reading);
+  else if (suffix == ".npz")
+    write_keypoint_npz(path, reading);
+  else if (suffix.empty())
+    write_openpose_folder(path, reading);
+  else
+    throw Error(path + ": 2D poses are written as a folder, .json, .csv or .npz");
+}
+
+}  // namespace understudy::app

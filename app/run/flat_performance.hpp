@@ -1,0 +1,62 @@
+// A file of 2D poses performed by a person of other proportions, in a picture.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "retarget/keypoints/keypoint_reader.hpp"
+#include "retarget/pose2d/flat_retargeter.hpp"
+
+namespace understudy::app {
+
+struct FlatSourceOptions {
+  std::string path;
+  Canvas canvas;  ///< unknown: as the file or a picture beside it tells
+  double fps = 0;
+  std::string layout;  ///< empty: as the file tells
+  std::string person;  ///< a number; empty: who is seen longest
+};
+
+struct FlatOptions {
+  FlatSourceOptions source, target;
+  FlatPlace place = FlatPlace::Reference;
+  bool touches = true;  ///< hands that touch keep touching
+  float smoothing = 1;  ///< of the source's track, see KeypointFilterOptions
+  bool ahead = true;    ///< the source's proportions are read off the whole file before the first frame
+};
+
+/// Reads with the picture beside the file, where there is one. Throws Error as read_keypoints does.
+KeypointReading open_keypoints(const FlatSourceOptions& options);
+
+/// Lengths of whoever performs in the reading, from all of their poses. Throws Error naming the file when
+/// none can be read.
+Proportions proportions_of(const KeypointReading& reading, const LengthReader& lengths);
+
+/// The target of a file: of 2D poses (the first in which most is seen stands for the person), or of
+/// proportions alone, as write_proportions writes them. Adds to `told` what was decided.
+FlatTarget open_flat_target(const FlatSourceOptions& options, const LengthReader& lengths,
+                            std::vector<std::string>& told);
+/// Whether a file is one of proportions.
+bool is_proportions_file(const std::string& path);
+void write_proportions(const std::string& path, const Proportions& lengths);
+/// Throws Error naming the file.
+Proportions read_proportions(const std::string& path);
+
+struct FlatPerformance {
+  KeypointReading source, result;  ///< the result has one person, in the target's picture
+  Proportions source_lengths, target_lengths;
+  int64_t flagged = 0;
+  std::vector<std::string> told;  ///< sentences
+};
+
+/// All frames, online. Throws Error.
+FlatPerformance perform_flat(const FlatOptions& options, const LengthReader& lengths,
+                             const std::function<void(float)>& progress);
+
+/// By the suffix: a folder without one gets a file a frame, .json is one list, .csv, .npz. Throws Error naming
+/// the path.
+void write_flat(const std::string& path, const KeypointReading& reading);
+
+}  // namespace understudy::app

@@ -1,0 +1,27 @@
+// A performed motion as pictures of its 2D pose: what generators of images and films are steered by.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "app/run/exports.hpp"
+#include "retarget/pose2d/body_view.hpp"
+
+namespace understudy::app {
+
+/// A path in .mp4 is a film; one in .json the poses alone, as ControlNet lists them; any other is a folder of
+/// PNGs, frame_00000.png and so on. Depth, normals, mask and the poses' file lie beside: control.mp4 has
+/// control_depth.mp4, control_normals.mp4, control_mask.mp4, and control.json or the folder control_openpose.
+/// The poses are kept, some kB a frame, and all is written at the end: the camera sees the whole take.
+/// Throws Error where the path cannot be written, or the choice makes no sense; finish() also where nobody is
+/// in view.
+std::unique_ptr<MotionOutput> open_pose_pictures(const std::string& path, const ExportBody& body,
+                                                 const std::string& name, double fps);
+
+/// Whether such a path is a folder.
+bool is_picture_folder(const std::string& path);
+
+/// The points of the body's face and feet: on the head's own surface where the target has one.
+BodyMarks marks_of(const ExportBody& body);
+
+}  // namespace understudy::app
