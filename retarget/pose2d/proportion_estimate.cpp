@@ -13,7 +13,16 @@ constexpr double kSeenTooLong = 0.006;  // of the stature: a standard deviation 
 constexpr double kNeverSure = 1e-6;     // a point may be anywhere
 constexpr double kLeastDoubt = 0.02;    // poses of one person err alike: many of them leave some doubt
 constexpr double kMostPoses = 20;       // for the same reason more of them count as so many
-constexpr int kGridBelow = 30, kGridAbove = 50;  // tenths of a standard deviation
+constexpr double kBelow = 3, kAbove = 5;  // standard deviations: where lengths are looked for
+constexpr int kPlaces = 100;
+constexpr uint32_t kOneIn = 50;  // longest ones are not believed
+
+/// Logarithm of a normal density, but for tails that fall as an exponential: networks err.
+double log_density(double off) {
+  constexpr double kTail = 3;
+  const double far = std::abs(off);
+  return far < kTail ? -far * far / 2 : kTail * (kTail / 2 - far);
+}
 
 /// Logarithm of the chance that a standard normal number lies below z.
 double log_chance_below(double z) {
@@ -31,7 +40,18 @@ void ProportionEstimate::Seen::add(float length) {
   if (!(static_cast<double>(length) > kShortest)) return;
   const int bin = bin_of(static_cast<double>(length));
   ++counts[static_cast<size_t>(bin)];
+  ++all;
   highest = std::max(highest, bin);
+}
+
+double ProportionEstimate::Seen::longest() const {
+  uint32_t left = all / kOneIn;
+  for (int bin = highest; bin >= 0; --bin) {
+    const uint32_t here = counts[static_cast<size_t>(bin)];
+    if (here > left) return kShortest * std::exp(kStep * (bin + 0.5));
+    left -= here;
+  }
+  return kShortest;
 }
 
 double ProportionEstimate::Seen::log_chance(double length, double jitter) const {
@@ -61,15 +81,17 @@ void ProportionEstimate::push(const FlatPose& pose, const PoseLengths& told) {
 /// What was told is a normal distribution of the logarithm; each pose in which the bone is seen, foreshortened
 /// or not, makes shorter ones less likely.
 ProportionEstimate::LogLength ProportionEstimate::log_length(int bone, double jitter) const {
+  const Seen& seen = seen_[static_cast<size_t>(bone)];
   const double share = std::min(1.0, kMostPoses / poses_), told = sum_[bone] / weight_[bone],
                doubt = std::sqrt(1 / (share * weight_[bone]));
-  std::array<double, kGridBelow + kGridAbove + 1> chance{};
-  const auto place = [&](size_t k) { return told + doubt * 0.1 * (static_cast<double>(k) - kGridBelow); };
-  for (size_t k = 0; k < chance.size(); ++k) {
-    const double off = (place(k) - told) / doubt;
-    chance[k] =
-        share * seen_[static_cast<size_t>(bone)].log_chance(std::exp(place(k)), jitter) - off * off / 2;
-  }
+  const double first = told - kBelow * doubt,
+               last = std::max(told, std::log(seen.longest())) + kAbove * doubt;
+  const auto place = [&](size_t k) {
+    return first + (last - first) * static_cast<double>(k) / (kPlaces - 1);
+  };
+  std::array<double, kPlaces> chance{};
+  for (size_t k = 0; k < chance.size(); ++k)
+    chance[k] = share * seen.log_chance(std::exp(place(k)), jitter) + log_density((place(k) - told) / doubt);
   const double most = *std::max_element(chance.begin(), chance.end());
   double all = 0, sum = 0, squares = 0;
   for (size_t k = 0; k < chance.size(); ++k) {

@@ -24,9 +24,12 @@ class ProportionEstimate {
   struct Seen {
     static constexpr int kBins = 640;
     std::array<uint32_t, kBins> counts{};
+    uint32_t all = 0;
     int highest = 0;  ///< bin that counts anything
     static int bin_of(double length);
     void add(float length);
+    /// Of the longest, all but the first in fifty.
+    double longest() const;
     /// Logarithm of the chance that a bone of this length was never seen longer, where detectors see lengths
     /// wrong by `jitter` (standard deviation), pixels.
     double log_chance(double length, double jitter) const;
