@@ -10,7 +10,7 @@ namespace understudy {
 
 namespace {
 
-constexpr float kTouches = 0.05f, kLetsGo = 0.1f;  // of the stature
+constexpr float kTouches = 0.04f, kLetsGo = 0.07f;  // of the stature
 
 struct FlatArm {
   int shoulder, elbow, wrist;

@@ -6,9 +6,9 @@
 
 namespace understudy {
 
-/// Moves the arms of `result`, which does what `source` does on bones of other lengths (from, to: pixels), so
-/// that a wrist nearer to a point (kHandPairs) than a twentieth of the stature is as near to it again, and less and less
-/// so up to a tenth. Elbows bend to the same side in the picture; no bone becomes longer than its length.
+/// Moves the arms of `result`, which does what `source` does on bones of other lengths (from, to: pixels): a
+/// wrist nearer to a point (kHandPairs) than 0.04 of the stature is as near to it again, less and less so up
+/// to 0.07. Elbows bend to the same side in the picture; no bone becomes longer than its length.
 void keep_touches(const FlatPose& source, const BoneLengths& from, const BoneLengths& to, FlatPose& result);
 
 }  // namespace understudy
