@@ -336,6 +336,7 @@ int run_export(const ExportOptions& options) {
   CharacterExportOptions on_any_rig = options.file;
   on_any_rig.their_rig = options.target.rig != Rig::Ours && options.bones != "22";
   check_export_options(options.out, format, on_any_rig);
+  check_pose_choice(options.out, format, options.poses);
   US_CHECK(options.takes.empty() || !options.document.empty(), "--take: only a document has takes");
   for (const std::string& path : {options.preview, options.report}) check_writable(path);
   Performance done =

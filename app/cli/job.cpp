@@ -169,7 +169,11 @@ void run_job(const JobOptions& options) {
   check(options.tempo);
   check_not_read(options.out, {options.source.path, options.source.motion, options.source.times,
                                options.source.markers, options.target.path});
-  if (!options.out.empty()) check_export(options.out, export_format(options.format, options.out));
+  if (!options.out.empty()) {
+    const ExportFormat& format = export_format(options.format, options.out);
+    check_pose_choice(options.out, format, options.poses);
+    check_export(options.out, format);
+  }
   for (const std::string& path : {options.report, options.preview, options.skeletons}) check_writable(path);
   Running job = start(options);
   Progress progress(file_name(options.source.path) + " -> " + file_name(options.target.path),

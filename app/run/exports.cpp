@@ -265,6 +265,11 @@ void check_export_options(const std::string& path, const ExportFormat& format,
   US_CHECK(!(file.reduce_mm > 0), path, ": ", format.label, " holds every frame, so keys cannot be left out");
 }
 
+void check_pose_choice(const std::string& path, const ExportFormat& format, const PoseChoice& poses) {
+  US_CHECK(format.is_pictures || is_usual(poses), path, ": ", format.label,
+           " shows no pictures: camera, canvas, rate, count and drawing are of pose pictures");
+}
+
 void check_performers(const std::string& path, const ExportFormat& format, size_t count) {
   US_CHECK(count <= 1 || format.is_character, path, ": ", format.label, " holds one motion, not ", count,
            " performers");
@@ -295,6 +300,7 @@ ExportCost export_motion(const std::string& path, const ExportFormat& format,
     std::vector<CharacterPerformance> performances;
     for (const ExportInput& one : performers) {
       check_export_options(path, format, one.body.file);
+      check_pose_choice(path, format, one.body.poses);
       performances.push_back({*one.body.character, *one.body.screen, one.clips, one.body.file, one.name});
     }
     return export_character(path, performances);

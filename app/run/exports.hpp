@@ -50,6 +50,9 @@ void check_not_read(const std::string& path, const std::vector<std::string>& fil
 void check_export_options(const std::string& path, const ExportFormat& format,
                           const CharacterExportOptions& file);
 
+/// Throws Error where anything of pose pictures is chosen for a file that has none.
+void check_pose_choice(const std::string& path, const ExportFormat& format, const PoseChoice& poses);
+
 /// Throws Error where such a file cannot hold so many performers.
 void check_performers(const std::string& path, const ExportFormat& format, size_t count);
 

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <tuple>
 
 #include "render/camera.hpp"
 #include "retarget/base/error.hpp"
@@ -115,6 +116,22 @@ PictureCount picture_count(const std::string& text) {
   US_CHECK(parse_integer(text, count) && count >= 1 && count <= 1000000, "--count ", text,
            ": is a number of pictures from 1 to 1,000,000, or 4n+1");
   return {static_cast<int>(count), false};
+}
+
+bool is_usual(const PoseChoice& poses) {
+  const PictureCamera& camera = poses.camera;
+  const bool has_camera = camera.yaw_deg || camera.pitch_deg || camera.distance_m || camera.fov_deg ||
+                          camera.target || camera.orthographic || !camera.reference.empty();
+  const PoseChoice usual;
+  const auto drawn = [](const render::PosePictureOptions& d) {
+    return std::tie(d.layout, d.hands, d.face, d.half_width, d.wide_sticks);
+  };
+  const auto others = [](const PoseChoice& c) {
+    return std::tie(c.rate, c.count.count, c.count.is_4n_plus_1, c.hides_face, c.hides_limbs, c.file, c.depth,
+                    c.normals, c.mask);
+  };
+  return !has_camera && !poses.canvas && drawn(poses.drawing) == drawn(usual.drawing) &&
+         others(poses) == others(usual);
 }
 
 Pinhole film_camera(const PictureCamera& camera, const Points& points, float front, const Canvas& canvas) {

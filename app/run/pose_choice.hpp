@@ -59,5 +59,7 @@ struct PoseChoice {
   PoseFile file = PoseFile::ControlNet;
   bool depth = false, normals = false, mask = false;  ///< films of the same view, beside it
 };
+/// Whether nothing in it was chosen.
+bool is_usual(const PoseChoice& poses);
 
 }  // namespace understudy::app

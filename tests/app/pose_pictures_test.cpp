@@ -209,6 +209,17 @@ TEST(PosePictures, RefuseWhatCannotBeInASentence) {
   EXPECT_TRUE(contains(error_of([&] { film(folder.path("mine"), input); }), "choose another folder"));
 }
 
+TEST(PosePictures, AreNotChosenForAFileWithoutPictures) {
+  const TempFolder folder;
+  ExportInput input = filmed_input();
+  EXPECT_TRUE(is_usual(input.body.poses));
+  input.body.poses.mask = true;
+  for (const char* name : {"a.bvh", "a.glb"})
+    EXPECT_TRUE(contains(
+        error_of([&] { export_motion(folder.path(name), export_format("", name), {input}); }), "no pictures"))
+        << name;
+}
+
 TEST(PictureCamera, IsWordsOrAFile) {
   const PictureCamera words = picture_camera("yaw=-30.5,fov=40,orthographic");
   EXPECT_FLOAT_EQ(*words.yaw_deg, -30.5f);

@@ -38,6 +38,7 @@ TEST_F(PosePicturesCommand, BadInputIsASentence) {
   expect_clean_failure(film({"--out", out("a.mp4"), "--canvas", "0x480"}), "0x480");
   expect_clean_failure(film({"--out", out("a.mp4"), "--count", "none"}), "4n+1");
   expect_clean_failure(film({"--out", out("a.mp4"), "--stick-width", "thick"}), "--stick-width");
+  expect_clean_failure(film({"--out", out("a.glb"), "--canvas", "320x240"}), "shows no pictures");
   const std::string far = scratch.path("far.json");
   write_text(far, R"({"target": [90, 0, 0], "distance_m": 2})");
   expect_clean_failure(film({"--out", out("a.mp4"), "--camera", far}), "nobody is in the camera's view");

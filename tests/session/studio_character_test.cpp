@@ -9,6 +9,7 @@
 #include "retarget/character/gltf_character.hpp"
 #include "retarget/character/read_character.hpp"
 #include "retarget/formats/bytes.hpp"
+#include "retarget/keypoints/keypoint_reader.hpp"
 #include "tests/retarget/character/characters.hpp"
 #include "tests/session/studio_fixture.hpp"
 
@@ -151,6 +152,20 @@ TEST_F(StudioCharacter, TakesOfOneTargetAreClipsOfOneFile) {
   studio.run("method.offsets", {"1", "off"});
   studio.wait_idle();
   EXPECT_NE(refused("take=1").find("offsets"), std::string::npos);
+}
+
+TEST_F(StudioCharacter, ATakeBecomesPosePictures) {
+  Studio studio(services());
+  open(studio);
+  studio.run("export.run",
+             {"0", path("control.mp4"), "canvas=160x120", "rate=16", "count=4n+1", "camera=yaw=20"});
+  studio.wait_idle();
+  ASSERT_TRUE(studio.session().errors.empty()) << studio.session().errors.front().text;
+  const KeypointReading read = read_keypoints(path("control.json"));
+  EXPECT_EQ(read.frames.size() % 4, 1u);
+  EXPECT_EQ(read.canvas, (Canvas{160, 120}));
+  EXPECT_NE(refusal(studio, "export.run", {"0", path("a.mp4"), "canvas=big"}).find("'big'"),
+            std::string::npos);
 }
 
 TEST_F(StudioCharacter, WhatTheDocumentReadsIsNeverWrittenOver) {
