@@ -26,7 +26,7 @@ struct Walk {
   Pinhole camera;
 };
 Walk walk(float yaw) {
-  const ShapedBody body = builtin_person();
+  static const ShapedBody body = builtin_person();
   BoneScales scales;
   scales.arms = 1.3f, scales.legs = 0.75f;
   Walk made{scaled_apart(flat_person(body.vertices, body.joints, head_vertices(body.vertices, body.joints)),
