@@ -11,7 +11,7 @@ namespace understudy::training {
 namespace {
 
 constexpr int kProportionBatch = 512, kFigureCases = 600;
-constexpr int64_t kUsualPoses = 512 * 12000;
+constexpr int64_t kUsualPoses = 22000000;  // about 12 core-minutes
 
 Schedule proportion_schedule() {
   Schedule schedule;
