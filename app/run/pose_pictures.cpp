@@ -225,7 +225,7 @@ Points PosePictures::held_points() const {
 
 Pinhole PosePictures::find_camera() const {
   const Joints first = forward_kinematics(rest_, frames_[0].pose).joints;
-  const Pinhole whole = film_camera(choice_.camera, held_points(), front_of(first), canvas_);
+  Pinhole whole = film_camera(choice_.camera, held_points(), front_of(first), canvas_);
   if (!reference_) return whole;
   CameraFitOptions options;
   options.focal = whole.focal;

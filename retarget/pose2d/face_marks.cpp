@@ -25,6 +25,7 @@ HeadBox box_of_head(const std::vector<Vec3>& head) {
   HeadBox box;
   for (int axis = 0; axis < 3; ++axis) {
     std::vector<float> along;
+    along.reserve(head.size());
     for (const Vec3& point : head) along.push_back(point[axis]);
     std::sort(along.begin(), along.end());
     const size_t stray = along.size() / 100;
