@@ -52,8 +52,11 @@ class Cast {
              " has fewer than two people");
     for (const std::string& folder : split_.motion_folders)
       for (Clip& clip : read_clips(folder)) clips_.push_back(std::move(clip));
-    const auto frames = static_cast<int>(kTrackSeconds * 120);
-    runs_ = good_runs(clips_, std::max(options.frames, 1) * 4, std::max(frames, options.frames * 4));
+    float rate = 1;  // frames of the fastest clip a second
+    for (const Clip& clip : clips_) rate = std::max(rate, static_cast<float>(clip.motion.fps));
+    const auto shortest = static_cast<int>(rate * static_cast<float>(options.frames) / kRate),
+               track = static_cast<int>(rate * kTrackSeconds);
+    runs_ = good_runs(clips_, std::max(shortest, 1), std::max(shortest, track));
     US_CHECK(runs_.size() > 1, options.data, ": the split ", options.split, " has fewer than two long clips");
   }
 

@@ -56,8 +56,11 @@ void FlatPlacement::push(const FlatPose& source, float source_leg, FlatPose& pos
   const auto low = lowest_of(source, pose), made = lowest_of(pose, source);
   if (low && made) {
     if (!feet_) {
-      const auto stands = standing_ ? lowest_of(*standing_, pose) : low;
-      feet_ = Line{*low, stands.value_or(*made + way.y())};
+      feet_ = Line{*low, standing_ ? *made + way.y() : *low};
+      // Some pictures show heels and toes, others ankles alone.
+      if (standing_)
+        if (const auto stands = lowest_of(*standing_, pose))
+          feet_->to = *made + *stands - *lowest_of(pose, *standing_);
     }
     lift_ = feet_->to + ratio * (*low - feet_->from) - *made - way.y();
   }

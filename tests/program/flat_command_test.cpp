@@ -1,0 +1,117 @@
+// 2D poses by the shipped program: `retarget` onto a person in a picture, the suites and their evaluation.
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "retarget/base/file.hpp"
+#include "retarget/keypoints/keypoint_reader.hpp"
+#include "retarget/keypoints/keypoint_writers.hpp"
+#include "retarget/pose2d/flat_placement.hpp"
+#include "tests/app/cli_fixture.hpp"
+#include "tests/support/flat_person.hpp"
+#include "tests/support/training_folder.hpp"
+
+namespace understudy::tests {
+namespace {
+
+using Json = nlohmann::json;
+
+class FlatCommand : public ShippedProgram {
+ protected:
+  void SetUp() override {
+    KeypointReading track = reading(flat_person());
+    for (int t = 1; t < 8; ++t) {
+      FlatPose pose = flat_person();
+      move_pose(Vec2(4.0f * static_cast<float>(t), 0), pose);
+      add(track, pose);
+    }
+    write_openpose_folder(scratch.path("track"), track);
+    FlatPose tall = flat_person(200, 1.5f);
+    move_pose(Vec2(0, 100), tall);
+    write_controlnet(scratch.path("reference.json"), reading(tall));
+  }
+  static void add(KeypointReading& reading, const FlatPose& pose) {
+    const auto number = static_cast<int64_t>(reading.frames.size());
+    reading.frames.push_back({number, ""});
+    reading.tracks[0].poses.push_back({number, 1, pose});
+  }
+  static KeypointReading reading(const FlatPose& pose) {
+    KeypointReading one;
+    one.canvas = {640, 560};
+    one.tracks.resize(1);
+    one.tracks[0].person = 1;
+    add(one, pose);
+    return one;
+  }
+  Finished perform(const std::vector<std::string>& more) {
+    std::vector<std::string> arguments = {"retarget", "--source", scratch.path("track"), "--target",
+                                          scratch.path("reference.json")};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return run_program(arguments);
+  }
+};
+
+TEST_F(FlatCommand, ATrackIsPerformedOnTheReferencesPicture) {
+  const Finished done = perform({"--out", out("made.json"), "--report", out("report.json")});
+  ASSERT_EQ(done.code, 0) << done.err;
+  const KeypointReading made = read_keypoints(out("made.json"));
+  ASSERT_EQ(made.frames.size(), 8u);
+  EXPECT_EQ(made.canvas, (Canvas{640, 560}));
+  const KeypointTrack& person = made.performing();
+  EXPECT_NEAR(person.at(0)->at(body25::LeftAnkle).y(), 500 - 1.5f * 10, 12);
+  EXPECT_GT(person.at(7)->at(body25::Neck).x(), person.at(0)->at(body25::Neck).x() + 25);
+  const Json report = Json::parse(read_file(out("report.json")));
+  EXPECT_GT(report["target_lengths"]["trunk"]["length"], report["source_lengths"]["trunk"]["length"]);
+  EXPECT_NE(done.err.find("from one pose"), std::string::npos) << done.err;
+}
+
+TEST_F(FlatCommand, PicturesAndTablesAreWrittenToo) {
+  ASSERT_EQ(perform({"--out", out("made.csv")}).code, 0);
+  ASSERT_EQ(perform({"--out", out("frames")}).code, 0);
+  EXPECT_TRUE(std::filesystem::exists(out("frames/frame_00007.png")));
+  EXPECT_TRUE(std::filesystem::exists(out("frames.json")));
+}
+
+TEST_F(FlatCommand, SameInputSameBytesAndNoPoseDependsOnALaterFrame) {
+  ASSERT_EQ(perform({"--out", out("a.npz")}).code, 0);
+  ASSERT_EQ(perform({"--out", out("b.npz")}).code, 0);
+  EXPECT_EQ(read_file(out("a.npz")), read_file(out("b.npz")));
+  ASSERT_EQ(perform({"--out", out("whole.json"), "--no-look-ahead"}).code, 0);
+  for (const auto& file : std::filesystem::directory_iterator(scratch.path("track")))
+    if (file.path().string().find("00006_") != std::string::npos ||
+        file.path().string().find("00007_") != std::string::npos)
+      std::filesystem::remove(file.path());
+  ASSERT_EQ(perform({"--out", out("part.json"), "--no-look-ahead"}).code, 0);
+  const KeypointReading whole = read_keypoints(out("whole.json")), part = read_keypoints(out("part.json"));
+  ASSERT_EQ(part.frames.size(), 6u);
+  for (int64_t t = 0; t < 6; ++t) EXPECT_EQ(*part.performing().at(t), *whole.performing().at(t)) << t;
+}
+
+TEST_F(FlatCommand, BadInputIsASentence) {
+  expect_clean_failure(perform({"--out", out("a.glb")}), "2D poses are written as");
+  expect_clean_failure(perform({"--out", out("a.json"), "--person", "7"}), "7");
+  expect_clean_failure(perform({"--out", out("a.json"), "--person", "anna"}), "anna");
+  expect_clean_failure(perform({"--out", out("a.json"), "--preview", out("p.png")}), "--preview");
+  expect_clean_failure(perform({"--out", scratch.path("reference.json")}), "reference.json");
+  expect_clean_failure(run_program({"retarget", "--source", scratch.path("track"), "--target", target(),
+                                    "--out", out("a.json")}),
+                       "2D poses are performed by a person in a picture");
+}
+
+TEST_F(FlatCommand, ASuiteIsMadeAndEvaluated) {
+  const std::string data = scratch.path("data");
+  test::write_training_folder(data);
+  test::write_walk_clip(data + "/motion/a/walk_poses.npz");
+  const std::string cases = scratch.path("cases"), report = out("report.json");
+  const Finished made = run_program({"cases", data, "--suite", "pose2d-seen", "--cases", "2", "--frames",
+                                     "10", "--split", "train", "--out", cases});
+  ASSERT_EQ(made.code, 0) << made.err;
+  const Finished done = run_program({"eval", cases, "--out", report});
+  ASSERT_EQ(done.code, 0) << done.err;
+  const Json mean = Json::parse(read_file(report))["mean"];
+  for (const char* const key : {"oks", "oks_touches", "bone_ratio", "jitter", "oks_copy", "oks_true"})
+    EXPECT_TRUE(mean.contains(key)) << key;
+  EXPECT_GT(mean["oks_true"], mean["oks_copy"]);
+}
+
+}  // namespace
+}  // namespace understudy::tests
