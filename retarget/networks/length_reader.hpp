@@ -14,8 +14,8 @@ constexpr int kProportionWidth = 448;
 /// What the network's logarithms of deviations are kept between.
 constexpr float kLeastLogDoubt = -5, kMostLogDoubt = 1;
 
-/// Without LibTorch. It reads each pose and its mirror image. Throws Error naming the file when it is missing,
-/// damaged, of another network or of another version.
+/// Without LibTorch. It reads each pose and its mirror image. Throws Error naming the file when it is
+/// missing, damaged, of another network or of another version.
 std::unique_ptr<LengthReader> load_network_length_reader(const std::string& path);
 
 }  // namespace understudy::nn

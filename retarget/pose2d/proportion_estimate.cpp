@@ -78,8 +78,8 @@ void ProportionEstimate::push(const FlatPose& pose, const PoseLengths& told) {
   ++poses_;
 }
 
-/// What was told is a normal distribution of the logarithm; each pose in which the bone is seen, foreshortened
-/// or not, makes shorter ones less likely.
+/// What was told is a normal distribution of the logarithm; each pose in which the bone is seen,
+/// foreshortened or not, makes shorter ones less likely.
 ProportionEstimate::LogLength ProportionEstimate::log_length(int bone, double jitter) const {
   const Seen& seen = seen_[static_cast<size_t>(bone)];
   const double share = std::min(1.0, kMostPoses / poses_), told = sum_[bone] / weight_[bone],

@@ -8,8 +8,8 @@
 
 namespace understudy {
 
-/// Online, of constant memory. What each pose tells counts by its doubt; both sides of a person are alike; the
-/// longer a bone is seen in any pose, the longer it is, but for what detectors see too long.
+/// Online, of constant memory. What each pose tells counts by its doubt; both sides of a person are alike;
+/// the longer a bone is seen in any pose, the longer it is, but for what detectors see too long.
 class ProportionEstimate {
  public:
   void reset() { *this = ProportionEstimate(); }
