@@ -282,6 +282,7 @@ void check_own_bones(const std::string& path, const ExportFormat& format) {
 std::unique_ptr<MotionOutput> open_export(const std::string& path, const ExportFormat& format,
                                           const ExportBody& body, const std::string& name, double fps) {
   check_export_options(path, format, body.file);
+  check_pose_choice(path, format, body.poses);
   if (!format.is_character) tell_left_out(path, body.file.rights);
   return format.open(path, body, name, fps);
 }
