@@ -9,8 +9,8 @@ namespace understudy {
 
 constexpr int kFlatBoneCount = 14;
 
-/// Bones between the first 15 points of BODY_25, outwards from the mid-hip: a bone's `from` is the `to` of one
-/// before it, or the mid-hip.
+/// Bones between the first 15 points of BODY_25, outwards from the mid-hip: a bone's `from` is the `to` of
+/// one before it, or the mid-hip.
 struct FlatBone {
   int from, to;
   const char* name;   ///< of a file's key: "left_thigh"

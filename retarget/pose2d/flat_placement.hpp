@@ -14,8 +14,8 @@ enum class FlatPlace {
 };
 constexpr Names<2> kFlatPlaceNames{"reference", "source"};
 
-/// Online. The lowest point of the feet goes as the source's does, in lengths of the legs: feet's line stays a
-/// line. Where feet are not seen, the middle of the body goes as the source's.
+/// Online. The lowest point of the feet goes as the source's does, in lengths of the legs: feet's line stays
+/// a line. Where feet are not seen, the middle of the body goes as the source's.
 class FlatPlacement {
  public:
   /// standing: the target in its own picture; none: it starts where the source stands.
