@@ -5,6 +5,7 @@
 #include "app/cli/commands.hpp"
 #include "app/cli/options.hpp"
 #include "app/run/evaluator.hpp"
+#include "app/run/flat_figures.hpp"
 #include "app/run/interrupt.hpp"
 #include "app/run/registered_source.hpp"
 #include "app/run/report.hpp"
@@ -149,7 +150,31 @@ void print(const Measured& result, bool with_name) {
                 static_cast<long long>(result.seen[k]), static_cast<long long>(result.frames));
 }
 
+/// Of 2D poses.
+int measure_flat(const MeasureOptions& options) {
+  check_writable(options.out);
+  const std::string weights = nn::weights_folder(network_options(options.how));
+  FlatSourceOptions source;
+  source.path = options.source.path;
+  source.fps = options.source.fps;
+  source.person = options.source.person;
+  const FlatFigures figures = flat_figures(source, *nn::load_length_reader(weights));
+  for (const std::string& sentence : figures.told) log::info(sentence);
+  Json report = report_header(weights);
+  report["source"] = source.path;
+  report["frames"] = figures.frames;
+  report["flagged"] = figures.flagged;
+  report["mended"] = figures.mended;
+  report["metrics"] = to_json(figures.metrics);
+  std::printf("%lld frames, %lld could not be used, in %lld left and right were exchanged: %s\n",
+              static_cast<long long>(figures.frames), static_cast<long long>(figures.flagged),
+              static_cast<long long>(figures.mended), report["metrics"].dump().c_str());
+  if (!options.out.empty()) write_json(options.out, report);
+  return 0;
+}
+
 int measure(const MeasureOptions& options) {
+  if (looks_like_keypoints(options.source.path)) return measure_flat(options);
   US_CHECK(!options.how.method.style.any(),
            "--style: what is measured is the source as it is; `style --report` tells "
            "how a style changes it");
@@ -187,7 +212,9 @@ int measure(const MeasureOptions& options) {
 
 Action declare_measure(CLI::App& command) {
   const auto options = std::make_shared<MeasureOptions>();
-  command.add_option("source", options->source.path, "scans, or anything else that has motion")->required();
+  command
+      .add_option("source", options->source.path, "scans, or anything else that has motion, 2D poses, too")
+      ->required();
   command.add_option("--out", options->out, "report as JSON");
   command.add_option("--every", options->every, "checks what is inside every so many frames only")
       ->check(CLI::Range(1, 1000000));

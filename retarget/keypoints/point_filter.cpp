@@ -7,8 +7,8 @@ namespace understudy {
 namespace {
 
 // Lengths are of a person's size (a body's height, about). Tuned on projected motions of the train split, 30
-// frames/s, with 15 mm of noise on each axis: jitter, 8.7 times the truth's, becomes 1.9 times, the error of 18.8 mm
-// 15.6. A One-Euro filter (Casiez, Roussel, Vogel, CHI 2012) has 2.9 times the jitter at that error.
+// frames/s, with 15 mm of noise on each axis: jitter, 8.7 times the truth's, becomes 1.9 times, the error of
+// 18.8 mm 15.6. A One-Euro filter (Casiez, Roussel, Vogel, CHI 2012) has 2.9 times the jitter at that error.
 constexpr float kCalmAcceleration = 1.0f;  // per second squared
 constexpr float kStartSpeed = 1.0f;        // per second: standard deviation of what is not known yet
 constexpr float kCoasting = 0.15f;         // seconds: the velocity of what is not seen decays

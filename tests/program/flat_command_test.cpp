@@ -86,6 +86,17 @@ TEST_F(FlatCommand, SameInputSameBytesAndNoPoseDependsOnALaterFrame) {
   for (int64_t t = 0; t < 6; ++t) EXPECT_EQ(*part.performing().at(t), *whole.performing().at(t)) << t;
 }
 
+TEST_F(FlatCommand, MeasureTellsOfATrackWithoutTruth) {
+  const Finished done = run_program({"measure", scratch.path("track"), "--out", out("figures.json")});
+  ASSERT_EQ(done.code, 0) << done.err;
+  const Json report = Json::parse(read_file(out("figures.json")));
+  EXPECT_EQ(report["frames"], 8);
+  EXPECT_EQ(report["flagged"], 0);
+  EXPECT_NEAR(report["metrics"]["seen"], 100, 1e-6);
+  EXPECT_LT(report["metrics"]["jitter_px"], 0.2);
+  EXPECT_LT(report["metrics"]["drift"], 1);
+}
+
 TEST_F(FlatCommand, BadInputIsASentence) {
   expect_clean_failure(perform({"--out", out("a.glb")}), "2D poses are written as");
   expect_clean_failure(perform({"--out", out("a.json"), "--person", "7"}), "7");
