@@ -31,7 +31,7 @@ grep -rnE --include='*.hpp' --include='*.cpp' '^ *#include *[<"]' "${folders[@]}
     if (floor[to] >= floor[from]) return "is on floor " floor[from] ", " to " on floor " floor[to]
     tree = to
     sub("/.*", "", tree)
-    if (ours && index(from "/", tree "/") != 1) {
+    if (ours && index(from "/", tree "/") != 1 && !((from, to) in also)) {
       if (!((from, tree) in also)) return "may not include " tree
       if (also[from, tree] != "" && floor[to] > also[from, tree])
         return "reaches no higher than floor " also[from, tree] " of " tree

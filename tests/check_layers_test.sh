@@ -16,6 +16,7 @@ put retarget/nn/facade.cpp '"retarget/nn/modules/net.hpp"'
 put retarget/plugin/plugin.cpp '"retarget/training/trainer.hpp"'
 put render/gl/functions.hpp '<GL/gl.h>'
 put render/passes/mesh_pass.cpp '"render/gl/functions.hpp"'
+put render/pose.cpp '"retarget/keypoints/flat_pose.hpp"'
 put ui/viewport/pane.cpp '"app/session/session.hpp"'
 put app/main.cpp '"app/cli/commands.hpp"'
 "$checker" "$tree" >"$tree/said" || { echo "a clean tree is refused:"; cat "$tree/said"; exit 1; }

@@ -240,7 +240,8 @@ void add_pose_options(CLI::App& command, PoseChoice& poses) {
     append_item(sizes, printed("%dx%d", preset.canvas.width, preset.canvas.height));
   command.add_option_function<std::string>(
       "--canvas", [&poses](const std::string& size) { poses.canvas = parse_canvas(size); },
-      "of pose pictures: their size, such as " + sizes + " (default: the reference's, else 832x480)");
+      "of pose pictures: their size, such as " + sizes +
+          " (default: the reference's, else 832x480); of 2D poses: of the picture that they lie on");
   command.add_option("--rate", poses.rate, "of pose pictures: how many a second (default: the source's)")
       ->check(CLI::Range(1.0, 1000.0));
   command.add_option_function<std::string>(

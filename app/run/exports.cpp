@@ -134,15 +134,17 @@ class CharacterOutput final : public MotionOutput {
   std::vector<float> doubt_m_;  // of each pose
 };
 
+std::unique_ptr<MotionOutput> open_character(const std::string& path, const ExportBody& body,
+                                             const std::string& name, double fps) {
+  return std::make_unique<CharacterOutput>(path, body, name, fps);
+}
+
 }  // namespace
 
 const std::vector<ExportFormat>& export_formats() {
   using P = const std::string&;
   using B = const ExportBody&;
   using Output = std::unique_ptr<MotionOutput>;
-  constexpr auto character = [](P path, B body, P name, double fps) -> Output {
-    return std::make_unique<CharacterOutput>(path, body, name, fps);
-  };
   static constexpr auto pose = [](auto& to, const ExportedBody&, const ExportFrame& frame) {
     to.push(frame.pose);
   };
@@ -156,8 +158,8 @@ const std::vector<ExportFormat>& export_formats() {
     to.push(by.surface(frame), by.joints(frame), frame.pose.local, frame.source_joints);
   };
   static const std::vector<ExportFormat> formats = {
-      {"glb", ".glb", "GLB", "The animated character, for any engine.", true, true, true, character},
-      {"gltf", ".gltf", "glTF", "The same as text.", true, true, true, character},
+      {"glb", ".glb", "GLB", "The animated character, for any engine.", true, true, true, open_character},
+      {"gltf", ".gltf", "glTF", "The same as text.", true, true, true, open_character},
       {"bvh", ".bvh", "BVH", "The motion of the bones, in centimetres.", true, false, true,
        [](P path, B body, P, double fps) -> Output {
          if (body.file.their_rig)

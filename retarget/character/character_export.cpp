@@ -647,6 +647,7 @@ ExportCost measure(Character written, const std::vector<StagedPerformance>& cast
 /// Of all who perform, each once.
 std::string rights_of(const std::vector<CharacterPerformance>& performances) {
   std::vector<std::string> all;
+  all.reserve(performances.size());
   for (const CharacterPerformance& one : performances) all.push_back(one.options.rights);
   return joined_once(all, "; ");
 }
