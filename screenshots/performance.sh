@@ -19,7 +19,12 @@ shown() {
 
 studio() {
   local name
-  "$understudy" play screenshots/performance.us --out "$work"
+  mkdir -p "$work/recordings/adults" "$work/recordings/children"  # what a style is taught from in picture 50
+  for name in walk scan; do
+    "$understudy" style "assets/samples/$name" --to old --strength 0.1 --out "$work/recordings/adults/$name.npz"
+    "$understudy" style "assets/samples/$name" --to child --out "$work/recordings/children/$name.npz"
+  done
+  (cd "$work" && "$understudy" play "$OLDPWD/screenshots/performance.us" --out "$work")
   for name in 47_performance 48_style_wipe 49_style_trails 50_teach_style; do shown $name 1280; done
 }
 

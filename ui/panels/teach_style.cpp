@@ -39,7 +39,7 @@ void draw_holds(Ui& ui, const TaughtFolder& folder, const std::string& mark) {
     return text_cut(ui, folder.path.empty() ? "Two recordings at least" : "Looks into it\u2026");
   const std::string path = folder.path + ": ";
   if (!held.problem.empty())
-    text_cut(ui, "Not yet: " + held.problem.substr(starts_with(held.problem, path) ? path.size() : 0));
+    text_cut(ui, held.problem.substr(starts_with(held.problem, path) ? path.size() : 0));
   else
     text_cut(ui, held.sentence() + (held.count < 2 ? "; several are needed" : ""));
   ui.mark(mark);
