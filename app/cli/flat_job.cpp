@@ -12,15 +12,6 @@
 namespace understudy::app {
 namespace {
 
-Json lengths_json(const Proportions& lengths) {
-  Json json;
-  for (size_t b = 0; b < kFlatBones.size(); ++b) {
-    const auto at = static_cast<Eigen::Index>(b);
-    json[kFlatBones[b].name] = {{"length", lengths.length[at]}, {"doubt", lengths.doubt[at]}};
-  }
-  return json;
-}
-
 void write_flat_report(const std::string& path, const FlatPerformance& made, const std::string& weights) {
   Json json = report_header(weights);
   json["source"] = {{"path", made.source.path},
@@ -31,8 +22,8 @@ void write_flat_report(const std::string& path, const FlatPerformance& made, con
                     {"fps", made.source.fps}};
   json["told"] = made.told;
   json["flagged"] = made.flagged;
-  json["source_lengths"] = lengths_json(made.source_lengths);
-  json["target_lengths"] = lengths_json(made.target_lengths);
+  json["source_lengths"] = to_json(made.source_lengths);
+  json["target_lengths"] = to_json(made.target_lengths);
   Json problems = Json::array();
   for (const KeypointFrame& frame : made.result.frames)
     if (!frame.problem.empty()) problems.push_back({{"frame", frame.number}, {"problem", frame.problem}});

@@ -42,9 +42,10 @@ Action declare_retarget(CLI::App& command) {
   command.add_option("--skeletons", job->skeletons,
                      "PNG of up to 60 frames with the extracted skeleton in each");
   return [job, flat] {
+    const bool is_flat = is_flat_job(*job);
     if (job->out.empty() && job->report.empty() && job->preview.empty() && job->skeletons.empty())
-      job->out = is_flat_job(*job) ? "out.json" : "out.glb";
-    if (is_flat_job(*job))
+      job->out = is_flat ? "out.json" : "out.glb";
+    if (is_flat)
       run_flat_job(*job, *flat);
     else if (job->source.person == "all")
       run_jobs_of_all(*job);

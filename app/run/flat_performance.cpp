@@ -109,13 +109,18 @@ bool is_proportions_file(const std::string& path) {
   return json.is_object() && json.contains(kFormat);
 }
 
-void write_proportions(const std::string& path, const Proportions& lengths) {
+Json to_json(const Proportions& lengths) {
   Json bones;
   for (size_t b = 0; b < kFlatBones.size(); ++b)
     bones[kFlatBones[b].name] = {{"length", lengths.length[static_cast<int>(b)]},
                                  {"doubt", lengths.doubt[static_cast<int>(b)]}};
-  write_json(path,
-             {{kFormat, kFormatVersion}, {"unit", "pixels"}, {"poses", lengths.poses}, {"bones", bones}});
+  return bones;
+}
+
+void write_proportions(const std::string& path, const Proportions& lengths) {
+  write_json(
+      path,
+      {{kFormat, kFormatVersion}, {"unit", "pixels"}, {"poses", lengths.poses}, {"bones", to_json(lengths)}});
 }
 
 Proportions read_proportions(const std::string& path) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "app/run/pose_choice.hpp"
+#include "app/run/report.hpp"
 #include "retarget/keypoints/keypoint_reader.hpp"
 #include "retarget/pose2d/flat_retargeter.hpp"
 
@@ -40,6 +41,8 @@ FlatTarget open_flat_target(const FlatSourceOptions& options, const LengthReader
                             std::vector<std::string>& told);
 /// Whether a file is one of proportions.
 bool is_proportions_file(const std::string& path);
+/// {BONE: {"length", "doubt"}}, pixels.
+Json to_json(const Proportions& lengths);
 void write_proportions(const std::string& path, const Proportions& lengths);
 /// Throws Error naming the file.
 Proportions read_proportions(const std::string& path);

@@ -7,6 +7,8 @@
 
 namespace understudy {
 
+/// Of BODY_25's points, the first: those of Zheng et al. (2021).
+constexpr int kPaperPoints = 15;
 constexpr int kFlatBoneCount = 14;
 
 /// Bones between the first 15 points of BODY_25, outwards from the mid-hip: a bone's `from` is the `to` of

@@ -10,8 +10,8 @@
 namespace understudy {
 namespace {
 
-constexpr int kPaperPoints = 15;
 constexpr double kNotKnown = std::numeric_limits<double>::quiet_NaN();
+
 bool both(const FlatPose& a, const FlatPose& b, int point) {
   return a.has(point) && b.has(point);
 }

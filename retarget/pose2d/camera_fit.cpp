@@ -5,11 +5,12 @@
 #include <vector>
 
 #include "retarget/base/error.hpp"
+#include "retarget/keypoints/proportions.hpp"
 
 namespace understudy {
 namespace {
 
-constexpr int kFitPoints = 15, kHeadings = 12, kSteps = 40;
+constexpr int kHeadings = 12, kSteps = 40;
 
 using Unknowns = Eigen::Vector4d;  // yaw, shift to the right and up in metres, logarithm of distance or focal
 
@@ -18,7 +19,7 @@ class FitProblem {
  public:
   FitProblem(const BodyPlaces& places, const FlatPose& reference, const CameraFitOptions& options)
       : options_(options) {
-    for (int point = 0; point < kFitPoints; ++point) {
+    for (int point = 0; point < kPaperPoints; ++point) {
       if (!reference.has(point)) continue;
       places_.emplace_back(places.row(point).transpose());
       wanted_.push_back(reference.at(point));

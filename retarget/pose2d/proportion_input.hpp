@@ -5,7 +5,6 @@
 
 namespace understudy {
 
-constexpr int kPaperPoints = 15;  ///< of BODY_25, the first
 /// Of each point x, y, whether it is seen and its confidence; of each bone how long it looks, and the
 /// logarithm.
 constexpr int kProportionInputs = 4 * kPaperPoints + 2 * kFlatBoneCount;

@@ -44,7 +44,7 @@ std::optional<Extraction> SkeletonStyle::pop() {
   Pose pose;
   pose.local = by_strength(next.frame.pose.local, *styled, strength_);
   pose.root = root_.push(next.frame, pose.local);
-  feet_.push(next.frame, root_.bears(), pose);
+  feet_.push(next.frame, root_.feet(), pose);
   Extraction result = exact_extraction(forward_kinematics(next.frame.rest, pose));
   result.confidence = next.seen.confidence;
   result.visibility = next.seen.visibility;

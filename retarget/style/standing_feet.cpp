@@ -17,17 +17,17 @@ float eased(float dt, float seconds) {
 
 }  // namespace
 
-void StandingFeet::push(const StyleFrame& source, const FootPoints<float>& bears, Pose& styled) {
-  const FootPoints<Vec3> was = foot_points(forward_kinematics(source.rest, source.pose).joints),
-                         is = foot_points(forward_kinematics(source.rest, styled).joints);
+void StandingFeet::push(const StyleFrame& source, const StyledFeet& feet, Pose& styled) {
+  const Vec3 root_way = styled.root - last_root_;
   const float most = kMostMoved * leg_length(source.rest);
   for (const size_t side : {size_t{0}, size_t{1}}) {
     Vec3 slid = Vec3::Zero();
     float lower = 0, all = 0, stands = 0;
     for (const size_t k : {side, side + 2}) {
-      const float weight = started_ ? std::min(bears[k], bore_[k]) : bears[k];
-      if (started_) slid += weight * ((was[k] - source_[k]) - (is[k] - styled_[k]));
-      lower += weight * (was[k].y() - is[k].y());
+      const float weight = started_ ? std::min(feet.bears[k], last_.bears[k]) : feet.bears[k];
+      if (started_)
+        slid += weight * ((feet.source[k] - last_.source[k]) - (root_way + feet.styled[k] - last_.styled[k]));
+      lower += weight * (feet.source[k].y() - styled.root.y() - feet.styled[k].y());
       all += weight;
       stands = std::max(stands, weight);
     }
@@ -42,9 +42,9 @@ void StandingFeet::push(const StyleFrame& source, const FootPoints<float>& bears
     moved.z() -= given_up * moved.z();
     moved.y() = started_ ? moved.y() + eased(source.dt, kHeight_s) * (lower - moved.y()) : lower;
     if (moved.norm() > most) moved *= most / moved.norm();
-    place_ankle(source.rest, static_cast<int>(side), is[side + 2] + moved, styled);
+    place_ankle(source.rest, static_cast<int>(side), styled.root + feet.styled[side + 2] + moved, styled);
   }
-  source_ = was, styled_ = is, bore_ = bears;
+  last_ = feet, last_root_ = styled.root;
   started_ = true;
 }
 

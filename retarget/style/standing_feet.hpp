@@ -14,13 +14,13 @@ namespace understudy {
 class StandingFeet {
  public:
   void reset() { *this = StandingFeet(); }
-  /// Turns the legs of `styled` (world). bears: how much each point of the feet bears (StyledRoot::bears).
-  void push(const StyleFrame& source, const FootPoints<float>& bears, Pose& styled);
+  /// Turns the legs of `styled` (world), of a frame with these feet.
+  void push(const StyleFrame& source, const StyledFeet& feet, Pose& styled);
 
  private:
-  /// Of the frame before, world.
-  FootPoints<Vec3> source_, styled_;
-  FootPoints<float> bore_{};
+  // Of the frame before:
+  StyledFeet last_;
+  Vec3 last_root_ = Vec3::Zero();                             // of the styled pose
   std::array<Vec3, 2> moved_ = {Vec3::Zero(), Vec3::Zero()};  ///< of each ankle
   bool started_ = false;
 };

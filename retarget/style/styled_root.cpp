@@ -15,8 +15,8 @@ constexpr float kPath_s = 4;  // over which styled and source's path are compare
 }  // namespace
 
 /// How much each point of the feet bears the body: 1 on the floor, less and less above it.
-FootPoints<float> StyledRoot::bearing(const Feet& feet, float leg, float dt) {
-  for (size_t k = 0; k < kFootPoints.size(); ++k) levels_[k].push(feet.source[k], leg, dt);
+FootPoints<float> StyledRoot::bearing(const FootPoints<Vec3>& feet, float leg, float dt) {
+  for (size_t k = 0; k < kFootPoints.size(); ++k) levels_[k].push(feet[k], leg, dt);
   // In the first frame a raised foot has no level of its own yet: both stand on one floor.
   if (!started_)
     for (const size_t k : {0, 2}) {
@@ -25,19 +25,19 @@ FootPoints<float> StyledRoot::bearing(const Feet& feet, float leg, float dt) {
     }
   FootPoints<float> bears{};
   for (size_t k = 0; k < kFootPoints.size(); ++k) {
-    const float above = (feet.source[k].y() - levels_[k].height()) / (kBearing * leg);
+    const float above = (feet[k].y() - levels_[k].height()) / (kBearing * leg);
     bears[k] = std::exp(-0.5f * above * above);
   }
   return bears;
 }
 
 /// The way of the styled pelvis since the last frame, over the floor.
-Vec3 StyledRoot::step(const StyleFrame& source, const Feet& feet, const FootPoints<float>& bears) {
+Vec3 StyledRoot::step(const StyleFrame& source, const StyledFeet& feet) {
   const Vec3 by_source = source.pose.root - last_root_;
   Vec3 by_feet = Vec3::Zero();
   float all = 0;
   for (size_t k = 0; k < kFootPoints.size(); ++k) {
-    const float weight = std::min(bears[k], bore_[k]);
+    const float weight = std::min(feet.bears[k], last_.bears[k]);
     by_feet += weight * ((feet.source[k] - last_.source[k]) - (feet.styled[k] - last_.styled[k]));
     all += weight;
   }
@@ -54,9 +54,9 @@ Vec3 StyledRoot::push(const StyleFrame& source, const Rotations& styled) {
   const float leg = leg_length(source.rest);
   const PosedSkeleton was = forward_kinematics(source.rest, source.pose),
                       is = forward_kinematics(source.rest, {styled, Vec3::Zero()});
-  const Feet feet{foot_points(was.joints), foot_points(is.joints)};
-  const FootPoints<float> bears = bearing(feet, leg, source.dt);
-  root_ = started_ ? Vec3(root_ + step(source, feet, bears)) : source.pose.root;
+  StyledFeet feet{foot_points(was.joints), foot_points(is.joints)};
+  feet.bears = bearing(feet.source, leg, source.dt);
+  root_ = started_ ? Vec3(root_ + step(source, feet)) : source.pose.root;
 
   // The lower points are as high as the source's; the lowest counts most.
   const float lowest =
@@ -66,13 +66,12 @@ Vec3 StyledRoot::push(const StyleFrame& source, const Rotations& styled) {
     const float weight = std::exp((lowest - feet.source[k].y()) / (kLower * leg));
     over += weight * (feet.source[k].y() - source.pose.root.y() - feet.styled[k].y());
     all += weight;
-    most = std::max(most, bears[k]);
+    most = std::max(most, feet.bears[k]);
   }
   const float wanted = over / all;
   offset_ =
       started_ ? offset_ + (1 - std::pow(1 - most, source.dt / kHeightEase_s)) * (wanted - offset_) : wanted;
   root_.y() = source.pose.root.y() + offset_;
-  bore_ = bears;
   last_ = feet;
   last_root_ = source.pose.root;
   started_ = true;

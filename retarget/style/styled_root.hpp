@@ -16,19 +16,15 @@ class StyledRoot {
   void reset() { *this = StyledRoot(); }
   /// Where the pelvis of the styled pose is. styled: its local rotations.
   Vec3 push(const StyleFrame& source, const Rotations& styled);
-  /// How much each point of the feet bears in the newest frame: 1 on the floor .. 0.
-  const FootPoints<float>& bears() const { return bore_; }
+  /// Of the newest frame.
+  const StyledFeet& feet() const { return last_; }
 
  private:
-  struct Feet {
-    FootPoints<Vec3> source, styled;  // world; relative to the styled pelvis
-  };
-  FootPoints<float> bearing(const Feet& feet, float leg, float dt);
-  Vec3 step(const StyleFrame& source, const Feet& feet, const FootPoints<float>& bears);
+  FootPoints<float> bearing(const FootPoints<Vec3>& feet, float leg, float dt);
+  Vec3 step(const StyleFrame& source, const StyledFeet& feet);
 
   FootPoints<FootLevel> levels_;
-  FootPoints<float> bore_{};  // as of bearing(), in the last frame
-  Feet last_;
+  StyledFeet last_;
   Vec3 last_root_ = Vec3::Zero(), root_ = Vec3::Zero();  // of the source; of the result
   float offset_ = 0;                                     // of the result's height over the source's
   float way_source_ = 0, way_styled_ = 0;                // over the floor, of the last seconds
