@@ -1,4 +1,5 @@
 // `understudy sheet`, and the pictures of styles that are made with it.
+#include <algorithm>
 #include <filesystem>
 
 #include "render/image.hpp"
@@ -8,6 +9,8 @@ namespace understudy::tests {
 namespace {
 
 namespace fs = std::filesystem;
+
+const std::string kSamples = US_SOURCE_DIR "/assets/samples/";
 
 class Sheet : public ShippedProgram {
  protected:
@@ -40,6 +43,22 @@ TEST_F(Sheet, FilesBeginWhereTheyAreAskedTo) {
   EXPECT_NE(read_bytes(out("at.png")), read_bytes(out("at@1.png")));
   const Finished later = sheet({walk(), "--from", "1", "--seconds", "0", "--out", out("from.png")});
   EXPECT_NE(later.out.find("1 rows, 1 moments"), std::string::npos) << later.out;
+}
+
+TEST_F(Sheet, PosesAndPicturesOfThemHaveRowsOfTheirOwn) {
+  ASSERT_EQ(run_program({"retarget", "--source", kSamples + "poses", "--target", kSamples + "reference.json",
+                         "--out", scratch.path("frames")})
+                .code,
+            0);
+  const Finished done = sheet({kSamples + "poses", kSamples + "reference.json", scratch.path("frames"),
+                               "--every", "0.5", "--out", scratch.path("flat.png")});
+  ASSERT_EQ(done.code, 0) << done.err;
+  EXPECT_NE(done.out.find("3 rows, 6 moments"), std::string::npos) << done.out;
+  const render::Image picture = render::read_png(scratch.path("flat.png"));
+  EXPECT_EQ(picture.width, 1800);
+  EXPECT_GT(std::count(picture.pixels.begin(), picture.pixels.end(), uint8_t{0}), picture.width * 100)
+      << "poses stand on black";
+  expect_clean_failure(sheet({kSamples + "poses", walk(), "--out", out("mixed.png")}), "poses");
 }
 
 TEST_F(Sheet, RefusesWhatItCannotShow) {
