@@ -14,7 +14,7 @@
 namespace understudy::app {
 namespace {
 
-constexpr Canvas kFilm{1024, 768}, kPicture{480, 832};
+constexpr Canvas kFilm{1024, 768}, kPicture{1024, 768};
 constexpr float kFilmRate = 30;
 constexpr int kFilmFrames = 90;
 constexpr int kFewest = 5;  // points of somebody
@@ -128,7 +128,7 @@ render::Image lit_picture(const FlatActor& actor, const Pinhole& camera, const C
 
 void write_reference(const std::string& folder) {
   FlatActor girl = flat_actor({1.15f, 1.0f, 1, 6}, "dance", 0, 0, Vec3::Zero());
-  const Pinhole camera = sample_camera(Vec3(0, 0.58f, 0), -0.25f, 0.08f, 4, 2200, kPicture);
+  const Pinhole camera = sample_camera(Vec3(0.32f, 0.56f, 0), -0.1f, 0.08f, 4, 2000, kPicture);
   KeypointReading picture = empty_film(kPicture, 1);
   Rng rng(6);
   add_track(girl, camera, {}, rng, picture);

@@ -94,9 +94,9 @@ TEST(Samples, HoldADanceAsPosesAndAGirlToDanceInAPicture) {
     EXPECT_LT(ahead(0), -200) << "he comes from the left,";
     EXPECT_GT(ahead(89), 50) << "and passes her";
     const KeypointReading girl = read_keypoints((folder / "reference.json").string());
-    EXPECT_EQ(girl.canvas, (Canvas{480, 832}));
+    EXPECT_EQ(girl.canvas, (Canvas{1024, 768}));
     EXPECT_EQ(points_seen(*girl.performing().at(0)), 19) << "18, and the middle of the hips";
-    EXPECT_EQ(render::read_png((folder / "reference.png").string()).height, 832);
+    EXPECT_EQ(render::read_png((folder / "reference.png").string()).height, 768);
     EXPECT_LT(size_of(folder / "poses") + fs::file_size(folder / "reference.png"), 1'000'000u);
   }
 }

@@ -1,4 +1,4 @@
-// `understudy sheet`, and the pictures of styles that are made with it.
+// `understudy sheet`, and the pictures that are made with it.
 #include <algorithm>
 #include <filesystem>
 
@@ -72,19 +72,31 @@ TEST_F(Sheet, RefusesWhatItCannotShow) {
   expect_clean_failure(sheet({scratch.path("none.glb"), "--out", file}), "none.glb");
 }
 
-TEST_F(Sheet, ThePicturesOfStylesAreMadeByTheirScript) {
-  ProgramOptions options;
-  options.program = US_SOURCE_DIR "/screenshots/performance.sh";
-  options.environment = {"UNDERSTUDY=" US_PROGRAM, "OUT=" + scratch.path("pictures")};
-  options.patience_s = 900;
-  fs::create_directories(scratch.path("pictures"));
-  const Finished run = run_program({}, options);
-  ASSERT_EQ(run.code, 0) << run.err;
-  for (const char* const name : {"47_performance", "48_style_wipe", "49_style_trails", "50_teach_style",
-                                 "52_style_walk", "53_style_stimuli"}) {
-    EXPECT_GE(render::read_png(scratch.path("pictures/" + std::string(name) + ".png")).width, 1280) << name;
-    EXPECT_TRUE(fs::exists(US_SOURCE_DIR "/screenshots/" + std::string(name) + ".webp")) << name;
+/// Those that screenshots/SCRIPT makes without a data folder, and that are in the repository.
+class PictureScript : public Sheet {
+ protected:
+  void expect_made(const std::string& script, const std::vector<std::string>& names) {
+    ProgramOptions options;
+    options.program = US_SOURCE_DIR "/screenshots/" + script;
+    options.environment = {"UNDERSTUDY=" US_PROGRAM, "OUT=" + scratch.path("pictures")};
+    options.patience_s = 900;
+    fs::create_directories(scratch.path("pictures"));
+    const Finished run = run_program({}, options);
+    ASSERT_EQ(run.code, 0) << run.err;
+    for (const std::string& name : names) {
+      EXPECT_GE(render::read_png(scratch.path("pictures/" + name + ".png")).width, 1280) << name;
+      EXPECT_TRUE(fs::exists(US_SOURCE_DIR "/screenshots/" + name + ".webp")) << name;
+    }
   }
+};
+
+TEST_F(PictureScript, MakesThoseOfStyles) {
+  expect_made("performance.sh", {"47_performance", "48_style_wipe", "49_style_trails", "50_teach_style",
+                                 "52_style_walk", "53_style_stimuli"});
+}
+
+TEST_F(PictureScript, MakesThoseOfFlatPeople) {
+  expect_made("flat.sh", {"55_flat_dance", "56_flat_crowd", "57_flat_turn"});
 }
 
 }  // namespace
