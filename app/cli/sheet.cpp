@@ -246,10 +246,11 @@ int make_flat_sheet(const SheetCommand& command) {
 int make_sheet(const SheetCommand& command) {
   check_writable(command.out);
   for (const std::string& text : command.paths) check_not_read(command.out, {file_of(text).path});
-  if (std::all_of(command.paths.begin(), command.paths.end(), is_flat_row)) return make_flat_sheet(command);
   const bool study = file_suffix(command.paths[0]) == ".study";
   US_CHECK(!study || command.paths.size() == 1, command.paths[0], ": a study is shown by itself");
   US_CHECK(study || command.motion.empty(), "--motion is of a study");
+  if (!study && std::all_of(command.paths.begin(), command.paths.end(), is_flat_row))
+    return make_flat_sheet(command);
   SheetContent content = study ? content_of_study(command) : content_of_files(command);
   name_rows(command, content.rows);
   content.rows[0].color = render::SheetOptions().source_color;
