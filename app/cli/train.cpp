@@ -60,6 +60,10 @@ void add_own(CLI::App& command, nn::PartTrainOptions& options) {
 }
 void add_own(CLI::App&, nn::DeformationTrainOptions&) {}
 void add_own(CLI::App&, nn::ProportionsTrainOptions&) {}
+void add_own(CLI::App& command, nn::LifterTrainOptions& options) {
+  command.add_option("--frames", options.frames, "frames of a sequence (default: 40)")
+      ->check(CLI::Range(2, 1000));
+}
 void add_own(CLI::App& command, nn::MotionSpaceTrainOptions& options) {
   command
       .add_option(
@@ -212,6 +216,7 @@ Action declare_train(CLI::App& command) {
   add_network<nn::StyleJudgeTrainOptions>(command, "judges of style, from a folder of clips for each",
                                           chosen);
   add_network<nn::ProportionsTrainOptions>(command, "how long a person's bones are, from a 2D pose", chosen);
+  add_network<nn::LifterTrainOptions>(command, "skeletons in space, from 2D poses", chosen);
   return [chosen] { return (*chosen)(); };
 }
 

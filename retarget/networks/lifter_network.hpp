@@ -21,11 +21,28 @@ constexpr int kLifterDoubtsAt = 3 * kJointCount, kLifterTurnsAt = kLifterDoubtsA
 constexpr float kLeastLogOff = -7, kMostLogOff = 1;
 /// The point of the picture beside which each joint's place is told, where point and hips are seen; -1: none,
 /// it is told around the hips.
-constexpr std::array<int, kJointCount> kPointOfJoint = {
-    -1, body25::LeftHip,       body25::RightHip,      -1,           body25::LeftKnee,     body25::RightKnee,
-    -1, body25::LeftAnkle,     body25::RightAnkle,    -1,           body25::LeftBigToe,   body25::RightBigToe,
-    body25::Neck, -1,          -1,                    body25::Nose, body25::LeftShoulder, body25::RightShoulder,
-    body25::LeftElbow,         body25::RightElbow,    body25::LeftWrist,                  body25::RightWrist};
+constexpr std::array<int, kJointCount> kPointOfJoint = {-1,
+                                                        body25::LeftHip,
+                                                        body25::RightHip,
+                                                        -1,
+                                                        body25::LeftKnee,
+                                                        body25::RightKnee,
+                                                        -1,
+                                                        body25::LeftAnkle,
+                                                        body25::RightAnkle,
+                                                        -1,
+                                                        body25::LeftBigToe,
+                                                        body25::RightBigToe,
+                                                        body25::Neck,
+                                                        -1,
+                                                        -1,
+                                                        body25::Nose,
+                                                        body25::LeftShoulder,
+                                                        body25::RightShoulder,
+                                                        body25::LeftElbow,
+                                                        body25::RightElbow,
+                                                        body25::LeftWrist,
+                                                        body25::RightWrist};
 
 /// Without LibTorch. It lifts each pose and its mirror image. Throws Error naming the file when it is
 /// missing, damaged, of another network or of another version.

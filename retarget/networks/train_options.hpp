@@ -88,9 +88,15 @@ struct ProportionsTrainOptions : TrainOptions {
   static constexpr const char* kNetwork = "proportions";
 };
 
-using AnyTrainOptions =
-    std::variant<SkeletonTrainOptions, PartTrainOptions, MotionTrainOptions, DeformationTrainOptions,
-                 MotionSpaceTrainOptions, StyleTrainOptions, StyleJudgeTrainOptions, ProportionsTrainOptions>;
+/// The same.
+struct LifterTrainOptions : TrainOptions {
+  static constexpr const char* kNetwork = "lifter";
+  int frames = 40;  ///< of a sequence
+};
+
+using AnyTrainOptions = std::variant<SkeletonTrainOptions, PartTrainOptions, MotionTrainOptions,
+                                     DeformationTrainOptions, MotionSpaceTrainOptions, StyleTrainOptions,
+                                     StyleJudgeTrainOptions, ProportionsTrainOptions, LifterTrainOptions>;
 
 /// Trains until the minutes or samples are used up, going on from the checkpoint where there is one. 0 when
 /// it came to the end, 1 when it was cancelled. Throws Error.

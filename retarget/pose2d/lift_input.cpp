@@ -25,7 +25,8 @@ LiftFrame LiftInput::push(const FlatPose& seen, float dt) {
            kFewestLifted);
   US_CHECK(pose.body.allFinite(), "a pose has points that are not finite");
   const float now = size_of(pose);
-  US_CHECK(std::isfinite(now) && now > kLeastLiftSize, "a pose whose points are all in one place cannot be lifted");
+  US_CHECK(std::isfinite(now) && now > kLeastLiftSize,
+           "a pose whose points are all in one place cannot be lifted");
   const float share = now > size_ ? 0.5f : 1 - std::exp(-dt / kLiftSizeMemory_s);
   size_ = has_last_ ? size_ + share * (now - size_) : now;
 

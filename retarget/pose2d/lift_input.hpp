@@ -14,9 +14,9 @@ constexpr float kLiftPlaceScale = 2;
 
 struct LiftFrame {
   Eigen::Matrix<float, 1, kLiftInputs> numbers;  ///< y up, around `origin`, of `size`
-  Vec2 origin = Vec2::Zero();    ///< the middle of the hips where it is seen, else that of the box; pixels
-  float size = 1;                ///< of the person in the last seconds (size_of), pixels
-  bool has_hips = false;         ///< the middle of the hips is seen
+  Vec2 origin = Vec2::Zero();  ///< the middle of the hips where it is seen, else that of the box; pixels
+  float size = 1;              ///< of the person in the last seconds (size_of), pixels
+  bool has_hips = false;       ///< the middle of the hips is seen
 };
 
 /// Online: no answer depends on a later frame.

@@ -20,8 +20,8 @@ torch::Tensor seen_places(const torch::Tensor& frames) {
                        .unflatten(-1, {kBodyPoints, kLiftPointInputs})
                        .slice(-1, 0, 2);  // [B, T, 25, 2]
   const auto hips = frames.slice(-1, kLiftInputs - 1).unsqueeze(-1);
-  return all.index_select(-2, torch::tensor(points).to(device)) * torch::tensor(told).to(device).view({-1, 1}) *
-         hips;
+  return all.index_select(-2, torch::tensor(points).to(device)) *
+         torch::tensor(told).to(device).view({-1, 1}) * hips;
 }
 
 }  // namespace
@@ -37,8 +37,8 @@ LifterNetImpl::LifterNetImpl()
 LifterNetImpl::Lifted LifterNetImpl::forward(const torch::Tensor& frames, torch::Tensor& state) {
   const auto x = torch::relu(embed(frames));  // [B, T, embedded]
   torch::Tensor h;
-  std::tie(h, state) = memory(x, state);                                  // [B, T, hidden]
-  const auto y = last(torch::relu(head(torch::cat({x, h}, -1))));         // [B, T, outputs]
+  std::tie(h, state) = memory(x, state);                           // [B, T, hidden]
+  const auto y = last(torch::relu(head(torch::cat({x, h}, -1))));  // [B, T, outputs]
   const auto places = y.slice(-1, 0, kLifterDoubtsAt).unflatten(-1, {kJointCount, 3});
   const auto seen = torch::constant_pad_nd(seen_places(frames), {0, 1});  // of depth nothing is seen
   return {places + seen, y.slice(-1, kLifterDoubtsAt, kLifterTurnsAt).clamp(kLeastLogOff, kMostLogOff),
