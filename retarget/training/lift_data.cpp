@@ -15,11 +15,13 @@
 namespace understudy::training {
 namespace {
 
-constexpr float kLiftedOdd = 0.4f, kLiftedBetween = 0.5f;  // shares of the people
-constexpr float kHalfRate = 0.25f;                         // share of the sequences
-constexpr float kNearestLifted = 1.5f;                     // metres before the eye
-constexpr float kNoFeet = 0.25f, kNoEyesAndEars = 0.1f;    // shares: layouts that lack them
-constexpr float kLimbAway = 0.25f;                         // share: a limb is not seen for a while
+constexpr float kLiftedOdd = 0.4f, kLiftedBetween = 0.5f;   // shares of the people
+constexpr float kTurnedLifted = 0.3f, kLiftedTurn = 0.12f;  // share of the sequences; radians about each axis
+constexpr float kSlowest = 0.75f, kFastest = 1.33f;         // of the clip's own rate
+constexpr float kHalfRate = 0.25f;                          // share of the sequences
+constexpr float kNearestLifted = 1.5f;                      // metres before the eye
+constexpr float kNoFeet = 0.25f, kNoEyesAndEars = 0.1f;     // shares: layouts that lack them
+constexpr float kLimbAway = 0.25f;                          // share: a limb is not seen for a while
 constexpr float kLimbGoneInAFrame = 0.02f;
 
 using PointList = std::array<int, 5>;
@@ -68,6 +70,7 @@ std::vector<Pose> poses_of(const LiftShot& shot, float template_leg) {
     Pose pose = shot.clip->motion.poses[static_cast<size_t>(shot.first + i * shot.step)];
     if (shot.mirrored) pose = mirrored(pose);
     pose.root *= leg;
+    for (size_t j = 0; j < shot.turned.size(); ++j) pose.local[j] *= shot.turned[j];
     poses.push_back(pose);
   }
   return poses;
@@ -91,7 +94,7 @@ LiftSequence seen_sequence(const LiftShot& shot, float template_leg, const Detec
   const std::vector<Pose> poses = poses_of(shot, template_leg);
   const Pinhole camera = view_of(poses, rng);
   LiftSequence sequence;
-  sequence.dt = static_cast<float>(shot.step) / shot.clip->motion.fps;
+  sequence.dt = static_cast<float>(shot.step) / (shot.clip->motion.fps * shot.speed);
   sequence.pitch = camera.rotation(1, 2);
   KeypointFilter filter;
   for (int t = 0; t < shot.frames; ++t) {
@@ -164,6 +167,12 @@ LiftSequence LiftData::random_sequence(Rng& rng) const {
   shot.step = rng.chance(kHalfRate) && run.count >= 2 * frames_ ? 2 : 1;
   shot.first = run.first + rng.below(run.count - shot.step * (frames_ - 1));
   shot.mirrored = rng.chance(0.5f);
+  shot.speed = rng.uniform(kSlowest, kFastest);
+  if (rng.chance(kTurnedLifted))
+    for (Mat3& turned : shot.turned) {
+      const float x = rng.normal(), y = rng.normal(), z = rng.normal();
+      turned = rotation_from_axis_angle(kLiftedTurn * Vec3(x, y, z));
+    }
   DetectorErrors errors = random_errors(rng);
   if (errors.limbs_missing > 0)
     errors.limbs_missing = kLimbGoneInAFrame;  // whole limbs go for a while, see Away

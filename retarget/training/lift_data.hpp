@@ -37,6 +37,8 @@ struct LiftShot {
   const Clip* clip = nullptr;
   int first = 0, step = 1, frames = 1;  ///< of the clip
   bool mirrored = false;
+  float speed = 1;                          ///< of the clip's own
+  Rotations turned = identity_rotations();  ///< joints are bent so much further, all the time
 };
 /// Everything with `errors` of a detector; points in `never` are not seen at all.
 LiftSequence lift_sequence(const LiftShot& shot, float template_leg, const DetectorErrors& errors, Rng& rng);
