@@ -17,11 +17,11 @@ namespace {
 
 constexpr float kLiftedOdd = 0.4f, kLiftedBetween = 0.5f;   // shares of the people
 constexpr float kTurnedLifted = 0.3f, kLiftedTurn = 0.12f;  // share of the sequences; radians about each axis
-constexpr float kSlowest = 0.75f, kFastest = 1.33f;         // of the clip's own rate
-constexpr float kHalfRate = 0.25f;                          // share of the sequences
-constexpr float kNearestLifted = 1.5f;                      // metres before the eye
-constexpr float kNoFeet = 0.25f, kNoEyesAndEars = 0.1f;     // shares: layouts that lack them
-constexpr float kLimbAway = 0.25f;                          // share: a limb is not seen for a while
+constexpr float kLiftedSlowest = 0.75f, kLiftedFastest = 1.33f;  // of the clip's own rate
+constexpr float kHalfRate = 0.25f;                               // share of the sequences
+constexpr float kNearestLifted = 1.5f;                           // metres before the eye
+constexpr float kNoFeet = 0.25f, kNoEyesAndEars = 0.1f;          // shares: layouts that lack them
+constexpr float kLimbAway = 0.25f;                               // share: a limb is not seen for a while
 constexpr float kLimbGoneInAFrame = 0.02f;
 
 using PointList = std::array<int, 5>;
@@ -167,7 +167,7 @@ LiftSequence LiftData::random_sequence(Rng& rng) const {
   shot.step = rng.chance(kHalfRate) && run.count >= 2 * frames_ ? 2 : 1;
   shot.first = run.first + rng.below(run.count - shot.step * (frames_ - 1));
   shot.mirrored = rng.chance(0.5f);
-  shot.speed = rng.uniform(kSlowest, kFastest);
+  shot.speed = rng.uniform(kLiftedSlowest, kLiftedFastest);
   if (rng.chance(kTurnedLifted))
     for (Mat3& turned : shot.turned) {
       const float x = rng.normal(), y = rng.normal(), z = rng.normal();
