@@ -75,6 +75,10 @@ void add_own(CLI::App& command, nn::Pose2dTrainOptions& options) {
   command.add_option("--first-direction", options.first_direction, "of them, degrees (default: 0)")
       ->check(CLI::Range(0.0, 180.0));
 }
+void add_own(CLI::App& command, nn::LifterTrainOptions& options) {
+  command.add_option("--frames", options.frames, "frames of a sequence (default: 40)")
+      ->check(CLI::Range(2, 1000));
+}
 void add_own(CLI::App& command, nn::MotionSpaceTrainOptions& options) {
   command
       .add_option(
@@ -228,6 +232,7 @@ Action declare_train(CLI::App& command) {
                                           chosen);
   add_network<nn::ProportionsTrainOptions>(command, "how long a person's bones are, from a 2D pose", chosen);
   add_network<nn::Pose2dTrainOptions>(command, "2D poses performed by others, paper 5's network", chosen);
+  add_network<nn::LifterTrainOptions>(command, "skeletons in space, from 2D poses", chosen);
   return [chosen] { return (*chosen)(); };
 }
 

@@ -22,12 +22,13 @@ struct StudioServices {
   std::function<std::shared_ptr<MotionSpace>()> motion_space;  ///< what fills gaps; called off the UI thread
   /// what codes movements that are blended; called off the UI thread, once
   std::function<std::shared_ptr<MotionCoder>()> motion_coder;
-  std::function<std::string()> weights;  ///< checksums, for documents; called off the UI thread
-  std::string samples;                   ///< folder of the bundled samples; empty: none
-  std::string program;                   ///< that shows a study; empty: this one, once more
-  std::string settings_file;             ///< empty: settings are not kept
-  bool greets_newcomers = false;         ///< without a settings file yet the cards of Getting started come
-  std::string autosave_folder;           ///< empty: no autosave
+  std::function<std::unique_ptr<Lifter>()> lifter;  ///< what lifts 2D poses; called off the UI thread
+  std::function<std::string()> weights;             ///< checksums, for documents; called off the UI thread
+  std::string samples;                              ///< folder of the bundled samples; empty: none
+  std::string program;                              ///< that shows a study; empty: this one, once more
+  std::string settings_file;                        ///< empty: settings are not kept
+  bool greets_newcomers = false;  ///< without a settings file yet the cards of Getting started come
+  std::string autosave_folder;    ///< empty: no autosave
 };
 
 class Studio {

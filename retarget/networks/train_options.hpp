@@ -98,9 +98,16 @@ struct Pose2dTrainOptions : TrainOptions {
   double first_direction = 0;     ///< degrees
 };
 
-using AnyTrainOptions = std::variant<SkeletonTrainOptions, PartTrainOptions, MotionTrainOptions,
-                                     DeformationTrainOptions, MotionSpaceTrainOptions, StyleTrainOptions,
-                                     StyleJudgeTrainOptions, ProportionsTrainOptions, Pose2dTrainOptions>;
+/// Where there is neither minutes nor samples, as many samples as the shipped weights saw.
+struct LifterTrainOptions : TrainOptions {
+  static constexpr const char* kNetwork = "lifter";
+  int frames = 40;  ///< of a sequence
+};
+
+using AnyTrainOptions =
+    std::variant<SkeletonTrainOptions, PartTrainOptions, MotionTrainOptions, DeformationTrainOptions,
+                 MotionSpaceTrainOptions, StyleTrainOptions, StyleJudgeTrainOptions, ProportionsTrainOptions,
+                 Pose2dTrainOptions, LifterTrainOptions>;
 
 /// Trains until the minutes or samples are used up, going on from the checkpoint where there is one. 0 when
 /// it came to the end, 1 when it was cancelled. Throws Error.

@@ -144,6 +144,8 @@ int train(const nn::StyleJudgeTrainOptions& options);
 int train(const nn::ProportionsTrainOptions& options);
 /// Samples are pairs of poses.
 int train(const nn::Pose2dTrainOptions& options);
+/// Samples are sequences; where the options have no end there is one.
+int train(const nn::LifterTrainOptions& options);
 /// Of the form "paper"; samples are steps.
 int train_steps(const nn::MotionSpaceTrainOptions& options);
 
