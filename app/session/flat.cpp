@@ -180,10 +180,13 @@ SourceFrames source_frames(const FlatPoses& poses) {
     kept.flagged = !clean.is_usable;
     kept.reason = clean.problem;
     kept.confidence = poses.confidence[t];
+    kept.confidence_of.setOnes();  // of joints in space nothing is known
     kept.points = clean.is_usable ? points_seen(clean.pose) : 0;
     event.frames.push_back(std::move(kept));
   }
-  for (const std::string& sentence : poses.reading.told) append_item(event.decision, sentence, "; ");
+  const std::string path = poses.reading.path + ": ";
+  for (const std::string& sentence : poses.reading.told)
+    append_item(event.decision, starts_with(sentence, path) ? sentence.substr(path.size()) : sentence, "; ");
   return event;
 }
 
