@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "retarget/base/error.hpp"
-#include "retarget/base/file.hpp"
+#include "retarget/base/part_file.hpp"
 #include "tests/app/program.hpp"
 #include "tests/support/fake_lifter.hpp"
 #include "tests/support/flat_person.hpp"
@@ -45,7 +45,7 @@ class KeypointSources : public testing::Test {
     return failure_of([&] { open_source(options); });
   }
 
-  tests::Scratch scratch;
+  tests::ScratchFolder scratch;
 };
 
 TEST_F(KeypointSources, AreOpenedByContentAndLifted) {
