@@ -82,7 +82,7 @@ void evaluate_performance(const Case& c, const EvalOptions& options, Networks ne
            ": --oracle skeleton needs source_joints");
   Retargeter retargeter(std::move(networks), retarget_options(options.how));
   if (character) retargeter.set_target(character->target);
-  RetargetedSource retargeted(*source, retargeter, from);
+  RetargetedSource retargeted(*source, retargeter, from, source_tools(options.how));
   for (size_t t = 0;; ++t) {
     check_interrupt("in case " + c.name);
     US_CHECK(!oracle || t <= oracle->size(), c.name, ": the truth has too few source joints");

@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 
 #include "app/run/exports.hpp"
+#include "app/run/keypoint_source.hpp"
 #include "app/run/report.hpp"
 #include "retarget/base/error.hpp"
 #include "retarget/base/log.hpp"
@@ -37,8 +38,6 @@ void add_flat_options(CLI::App& command, FlatOptions& flat) {
   command.add_option_function<std::string>(
       "--target-canvas", [&flat](const std::string& text) { flat.target.canvas = parse_canvas(text); },
       "of a target that is 2D poses: its picture's size (default: as the file or a picture beside it tells)");
-  command.add_option("--layout", flat.source.layout,
-                     "of 2D poses: the order of the points (default: as names or their count tell)");
   command.add_option("--target-person", flat.target.person,
                      "who of several people in a target that is 2D poses (default: who is seen longest)");
   command
@@ -57,7 +56,8 @@ void add_flat_options(CLI::App& command, FlatOptions& flat) {
 }
 
 bool is_flat_job(const JobOptions& job) {
-  return job.source.motion.empty() && !job.source.blend && looks_like_keypoints(job.source.path);
+  return is_keypoint_source(job.source) &&
+         (is_proportions_file(job.target.path) || looks_like_keypoints(job.target.path));
 }
 
 void run_flat_job(const JobOptions& job, FlatOptions flat) {
@@ -65,9 +65,8 @@ void run_flat_job(const JobOptions& job, FlatOptions flat) {
   flat.source.fps = job.source.fps;
   if (job.poses.canvas) flat.source.canvas = *job.poses.canvas;
   flat.source.person = job.source.person;
+  flat.source.layout = job.source.layout;
   flat.target.path = job.target.path;
-  US_CHECK(is_proportions_file(flat.target.path) || looks_like_keypoints(flat.target.path), flat.target.path,
-           ": 2D poses are performed by a person in a picture: 2D poses, too, or proportions");
   check_not_read(job.out, {flat.source.path, flat.target.path});
   US_CHECK(job.preview.empty() && job.skeletons.empty(),
            "2D poses have no --preview and no --skeletons: --out writes them");

@@ -24,6 +24,7 @@ struct StudioServices {
   std::function<std::shared_ptr<MotionSpace>()> motion_space;  ///< what fills gaps; called off the UI thread
   /// what codes movements that are blended; called off the UI thread, once
   std::function<std::shared_ptr<MotionCoder>()> motion_coder;
+  std::function<std::unique_ptr<Lifter>()> lifter;  ///< what lifts 2D poses; called off the UI thread
   /// what reads proportions off 2D poses; called off the UI thread, once
   std::function<std::shared_ptr<const LengthReader>()> lengths;
   std::function<std::string()> weights;  ///< checksums, for documents; called off the UI thread

@@ -17,6 +17,7 @@
 #include "retarget/motion_space/paper_space.hpp"
 #include "retarget/networks/dense_extractor.hpp"
 #include "retarget/networks/length_reader.hpp"
+#include "retarget/networks/lifter_network.hpp"
 #include "retarget/networks/network_deformer.hpp"
 #include "retarget/networks/plugin_api.hpp"
 #include "retarget/networks/weights_layout.hpp"
@@ -189,6 +190,10 @@ std::unique_ptr<StyleJudge> load_style_judge(const std::string& path) {
 
 std::unique_ptr<LengthReader> load_length_reader(const std::string& folder) {
   return load_network_length_reader(folder + "/proportions.weights");
+}
+
+std::unique_ptr<Lifter> load_lifter(const std::string& folder) {
+  return load_network_lifter(folder + "/lifter.weights");
 }
 
 RuntimeReport runtime_report() {

@@ -8,6 +8,7 @@
 
 #include "retarget/pipeline/interfaces.hpp"
 #include "retarget/pipeline/keypoint_transfer.hpp"
+#include "retarget/pipeline/lifter.hpp"
 #include "retarget/pipeline/motion_coder.hpp"
 #include "retarget/pipeline/motion_space.hpp"
 #include "retarget/pipeline/motion_style.hpp"
@@ -54,6 +55,10 @@ std::unique_ptr<StyleJudge> load_style_judge(const std::string& path);
 /// LibTorch. Throws Error naming the file when it is missing, damaged, of another network or of another
 /// version.
 std::unique_ptr<LengthReader> load_length_reader(const std::string& folder);
+
+/// What lifts 2D poses into space, with the weights in that folder (lifter.weights); it needs no LibTorch.
+/// Throws Error as load_length_reader does.
+std::unique_ptr<Lifter> load_lifter(const std::string& folder);
 
 /// The folder that weights are read from; empty when there is none.
 std::string weights_folder(const NetworkOptions& options);
