@@ -34,6 +34,11 @@ StudioServices studio_services(const std::string& weights) {
     options.weights = weights;
     return nn::load_motion_space(nn::weights_folder(options));
   };
+  services.lengths = [weights]() -> std::shared_ptr<const LengthReader> {
+    nn::NetworkOptions options;
+    options.weights = weights;
+    return nn::load_length_reader(nn::weights_folder(options));
+  };
   services.weights = [weights] {
     nn::NetworkOptions options;
     options.weights = weights;

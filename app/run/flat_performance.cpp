@@ -22,7 +22,6 @@ namespace fs = std::filesystem;
 constexpr const char* kFormat = "understudy_proportions";
 constexpr int kFormatVersion = 1;
 constexpr uint64_t kLargestProportions = 1 << 20;
-constexpr float kUncertain = 0.12f;  // of a length's logarithm
 
 std::optional<Canvas> canvas_of_picture(const std::string& path) {
   try {
@@ -39,16 +38,6 @@ const FlatPose& clearest_pose(const KeypointTrack& track) {
       track.poses.begin(), track.poses.end(),
       [](const TrackedPose& a, const TrackedPose& b) { return points_seen(a.pose) < points_seen(b.pose); });
   return best->pose;
-}
-
-/// "from 12 poses", and which bones nobody can be sure of.
-std::string about(const Proportions& lengths) {
-  std::string doubtful;
-  for (int b = 0; b < kFlatBoneCount; ++b)
-    if (lengths.doubt[b] > kUncertain)
-      append_item(doubtful, lower_case(kFlatBones[static_cast<size_t>(b)].label));
-  const std::string poses = lengths.poses == 1 ? "one pose" : grouped(lengths.poses) + " poses";
-  return "from " + poses + (doubtful.empty() ? "" : "; uncertain: " + doubtful);
 }
 
 /// Before the frame they were not known.
@@ -76,12 +65,16 @@ KeypointReading empty_result(const KeypointReading& source, const FlatTarget& ta
 
 }  // namespace
 
-KeypointReading open_keypoints(const FlatSourceOptions& options) {
+KeypointReading open_keypoints(const FlatSourceOptions& options, std::string* picture) {
   KeypointReaderOptions reading;
   reading.canvas = options.canvas;
   reading.fps = options.fps;
   reading.layout = options.layout;
-  reading.picture_size = canvas_of_picture;
+  reading.picture_size = [picture](const std::string& path) {
+    const std::optional<Canvas> canvas = canvas_of_picture(path);
+    if (canvas && picture != nullptr) *picture = path;
+    return canvas;
+  };
   if (!options.person.empty()) {
     int64_t person = 0;
     US_CHECK(parse_integer(options.person, person), "a person of 2D poses is a number, not '", options.person,
@@ -100,6 +93,25 @@ Proportions proportions_of(const KeypointReading& reading, const LengthReader& l
   }
   US_CHECK(estimate.poses() > 0, reading.path, ": nobody is seen well enough to tell their proportions");
   return estimate.lengths();
+}
+
+std::string evidence_of(const Proportions& lengths) {
+  std::string doubtful;
+  for (int b = 0; b < kFlatBoneCount; ++b)
+    if (lengths.doubt[b] > kUncertainLength)
+      append_item(doubtful, lower_case(kFlatBones[static_cast<size_t>(b)].label));
+  const std::string poses = lengths.poses == 1 ? "one pose" : grouped(lengths.poses) + " poses";
+  return "from " + poses + (doubtful.empty() ? "" : "; uncertain: " + doubtful);
+}
+
+FlatTarget flat_target(const KeypointReading& reading, const LengthReader& lengths) {
+  FlatTarget target;
+  target.lengths = proportions_of(reading, lengths);
+  FlatPose standing = clearest_pose(reading.performing());
+  add_middles(standing);
+  target.standing = standing;
+  target.canvas = reading.canvas;
+  return target;
 }
 
 bool is_proportions_file(const std::string& path) {
@@ -158,13 +170,31 @@ FlatTarget open_flat_target(const FlatSourceOptions& options, const LengthReader
   }
   const KeypointReading reading = open_keypoints(options);
   told.insert(told.end(), reading.told.begin(), reading.told.end());
-  target.lengths = proportions_of(reading, lengths);
-  FlatPose standing = clearest_pose(reading.performing());
-  add_middles(standing);
-  target.standing = standing;
-  target.canvas = reading.canvas;
-  told.push_back("the target's proportions are " + about(target.lengths));
+  target = flat_target(reading, lengths);
+  told.push_back("the target's proportions are " + evidence_of(target.lengths));
   return target;
+}
+
+FlatTrack perform_track(const KeypointReading& source, const std::vector<CleanPose>& clean,
+                        const std::optional<Proportions>& source_lengths, const FlatTarget& target,
+                        const FlatOptions& options, const LengthReader& lengths) {
+  FlatTrack made;
+  made.result = empty_result(source, target, options.place);
+  FlatRetargeter retargeter(std::make_unique<LimbTransfer>(options.touches), target, options.place);
+  ProportionEstimate estimate;
+  for (size_t frame = 0; frame < clean.size(); ++frame) {
+    check_interrupt("before frame " + std::to_string(frame));
+    if (!source_lengths && clean[frame].is_usable) look_at(clean[frame].pose, lengths, estimate);
+    TrackedPose out;
+    out.frame = static_cast<int64_t>(frame);
+    if (source_lengths || estimate.poses() > 0)
+      out.pose = retargeter.push(clean[frame], source_lengths ? *source_lengths : known_by_now(estimate));
+    made.result.frames[frame].problem = clean[frame].problem;
+    made.flagged += clean[frame].is_usable ? 0 : 1;
+    if (!is_nobody(out.pose)) made.result.tracks[0].poses.push_back(std::move(out));
+  }
+  made.source_lengths = source_lengths ? *source_lengths : known_by_now(estimate);
+  return made;
 }
 
 FlatPerformance perform_flat(const FlatOptions& options, const LengthReader& lengths) {
@@ -173,29 +203,19 @@ FlatPerformance perform_flat(const FlatOptions& options, const LengthReader& len
   made.told = made.source.told;
   const FlatTarget target = open_flat_target(options.target, lengths, made.told);
   made.target_lengths = target.lengths;
+  std::optional<Proportions> ahead;
   if (options.ahead) {
-    made.source_lengths = proportions_of(made.source, lengths);
-    made.told.push_back("the source's proportions are " + about(made.source_lengths) +
+    ahead = proportions_of(made.source, lengths);
+    made.told.push_back("the source's proportions are " + evidence_of(*ahead) +
                         ", read off the whole file before its first frame");
   }
   KeypointFilterOptions filter;
   filter.smoothing = options.smoothing;
   const std::vector<CleanPose> clean = clean_track(made.source, made.source.performer, filter);
-  FlatRetargeter retargeter(std::make_unique<LimbTransfer>(options.touches), target, options.place);
-  made.result = empty_result(made.source, target, options.place);
-  ProportionEstimate estimate;
-  for (size_t frame = 0; frame < clean.size(); ++frame) {
-    check_interrupt("before frame " + std::to_string(frame));
-    if (!options.ahead && clean[frame].is_usable) look_at(clean[frame].pose, lengths, estimate);
-    const Proportions source = options.ahead ? made.source_lengths : known_by_now(estimate);
-    TrackedPose out;
-    out.frame = static_cast<int64_t>(frame);
-    if (options.ahead || estimate.poses() > 0) out.pose = retargeter.push(clean[frame], source);
-    made.result.frames[frame].problem = clean[frame].problem;
-    made.flagged += clean[frame].is_usable ? 0 : 1;
-    if (!is_nobody(out.pose)) made.result.tracks[0].poses.push_back(std::move(out));
-  }
-  if (!options.ahead) made.source_lengths = known_by_now(estimate);
+  FlatTrack track = perform_track(made.source, clean, ahead, target, options, lengths);
+  made.result = std::move(track.result);
+  made.source_lengths = track.source_lengths;
+  made.flagged = track.flagged;
   return made;
 }
 

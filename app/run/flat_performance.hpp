@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -28,8 +29,9 @@ struct FlatOptions {
   bool ahead = true;    ///< the source's proportions are read off the whole file before the first frame
 };
 
-/// Reads with the picture beside the file, where there is one. Throws Error as read_keypoints does.
-KeypointReading open_keypoints(const FlatSourceOptions& options);
+/// Reads with the picture beside the file, where there is one; `picture`, unless null, gets its path. Throws
+/// Error as read_keypoints does.
+KeypointReading open_keypoints(const FlatSourceOptions& options, std::string* picture = nullptr);
 
 /// Lengths of whoever performs in the reading, from all of their poses. Throws Error naming the file when
 /// none can be read.
@@ -46,6 +48,26 @@ Json to_json(const Proportions& lengths);
 void write_proportions(const std::string& path, const Proportions& lengths);
 /// Throws Error naming the file.
 Proportions read_proportions(const std::string& path);
+
+/// The person who performs in the reading: their lengths, and how they stand in its picture where most of them
+/// is seen. Throws as proportions_of.
+FlatTarget flat_target(const KeypointReading& reading, const LengthReader& lengths);
+/// "from 12 poses; uncertain: left forearm": where lengths come from, and which nobody can be sure of.
+std::string evidence_of(const Proportions& lengths);
+/// Doubt of a length's logarithm above which it is uncertain.
+constexpr float kUncertainLength = 0.12f;
+
+/// A track performed by somebody else.
+struct FlatTrack {
+  KeypointReading result;      ///< one person, in the target's picture
+  Proportions source_lengths;  ///< as known in the last frame
+  int64_t flagged = 0;
+};
+/// All frames, online. clean: of the reading's performer. source_lengths: read ahead; none: they are learned as
+/// frames come. Throws Error.
+FlatTrack perform_track(const KeypointReading& source, const std::vector<CleanPose>& clean,
+                        const std::optional<Proportions>& source_lengths, const FlatTarget& target,
+                        const FlatOptions& options, const LengthReader& lengths);
 
 struct FlatPerformance {
   KeypointReading source, result;  ///< the result has one person, in the target's picture

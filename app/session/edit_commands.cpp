@@ -131,6 +131,7 @@ void add_skeleton_edits(Commands& commands) {
                       c.document.skeleton_edits.push_back(edit);
                     });
   commands.add_edit({"edit.swap", "Swap left and right", "FIRST LAST arms|legs|both"}, [](Call& c) {
+    if (c.document.flat) return exchange_flat_sides(c);
     SwapEdit edit = frame_range<SwapEdit>(c, 0);
     edit.limbs = c.choice<SwapEdit::Limbs>(2, "limbs", kLimbNames);
     c.document.skeleton_edits.push_back(edit);

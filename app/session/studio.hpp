@@ -9,12 +9,14 @@
 #include "app/session/frame_cache.hpp"
 #include "app/session/job_queue.hpp"
 #include "app/session/session.hpp"
+#include "retarget/pipeline/keypoint_transfer.hpp"
 
 namespace understudy::app {
 
 struct SourceFrames;
 struct BonesJob;
 struct SecondBodyJob;
+struct FlatJob;
 
 /// Where the networks come from: the program passes the trained ones, tests their own.
 struct StudioServices {
@@ -22,6 +24,8 @@ struct StudioServices {
   std::function<std::shared_ptr<MotionSpace>()> motion_space;  ///< what fills gaps; called off the UI thread
   /// what codes movements that are blended; called off the UI thread, once
   std::function<std::shared_ptr<MotionCoder>()> motion_coder;
+  /// what reads proportions off 2D poses; called off the UI thread, once
+  std::function<std::shared_ptr<const LengthReader>()> lengths;
   std::function<std::string()> weights;  ///< checksums, for documents; called off the UI thread
   std::string samples;                   ///< folder of the bundled samples; empty: none
   std::string program;                   ///< that shows a study; empty: this one, once more
@@ -128,6 +132,10 @@ class Studio {
   void follow_second_body();
   void start_second_body();
   void take_in_second_body(SecondBodyJob& work);
+  void follow_flat();
+  void start_flat(std::string key);
+  void take_in_flat(FlatJob& work);
+  void show_flat_source(const FlatJob& work);
   void note_openings(const Document& before, const std::vector<int64_t>& ids_before, bool changed_before);
   void roll_back_source();
   void note_source_read();

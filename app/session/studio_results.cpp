@@ -513,6 +513,7 @@ void Studio::take_in_results() {
   offer_fills();
   follow_bones();
   follow_second_body();
+  follow_flat();
   measure_finished();
 }
 
