@@ -1,4 +1,5 @@
-// The tables of engines (motion transfer, in space and in pictures) and extractors: what a take, a command line or a report may choose.
+// The tables of engines (motion transfer, in space and in pictures) and extractors: what a take, a command
+// line or a report may choose.
 #pragma once
 
 #include <memory>
