@@ -7,6 +7,7 @@
 
 #include "retarget/base/fields.hpp"
 #include "retarget/keypoints/track_edits.hpp"
+#include "retarget/pipeline/method_table.hpp"
 #include "retarget/pose2d/flat_placement.hpp"
 
 namespace understudy::app {
@@ -45,7 +46,7 @@ FieldsOf<S, ChosenLength> fields(V& visit, S& chosen) {
 
 /// Of a take whose target is a person in a picture.
 struct FlatTake {
-  std::string engine = "limbs";
+  std::string engine = flat_engines().front().name;
   FlatPlace place = FlatPlace::Reference;
   bool touches = true;                ///< hands that touch keep touching
   std::string person;                 ///< who of the target's file, a number; empty: who is seen longest
