@@ -6,27 +6,17 @@
 #include <vector>
 
 #include "retarget/base/fields.hpp"
-#include "retarget/keypoints/track_edits.hpp"
 #include "retarget/pose2d/flat_placement.hpp"
 
 namespace understudy::app {
 
-/// Of a source that is 2D poses. Who performs is SourceOptions::person.
+/// Of a source that is 2D poses, beside its SourceOptions.
 struct FlatSource {
-  std::string canvas;  ///< "1280x720"; empty: as the file, or a picture beside it, tells
-  std::string layout;  ///< name of a KeypointLayout; empty: as the file tells
-  float smoothing = 1;
   bool ahead = true;  ///< proportions are read off the whole file before its first frame
-  std::vector<TrackEdit> edits;
 };
-constexpr Within<float> kFlatSmoothing{0, 4};
 template <class V, class S>
 FieldsOf<S, FlatSource> fields(V& visit, S& flat) {
-  visit("canvas", flat.canvas);
-  visit("layout", flat.layout);
-  visit("smoothing", flat.smoothing, kFlatSmoothing);
   visit("ahead", flat.ahead);
-  visit("edits", flat.edits);
 }
 
 /// A bone's length as the user wants it.

@@ -66,7 +66,7 @@ TEST_F(FlatPath, PointsAreDraggedAndSidesExchangedOverARange) {
   play("playback.frame 2\nclick timeline.in\nplayback.frame 4\nclick timeline.out\nframes 3");
   play("click flat.exchange\nwait\nframes 3\nexpect flat.edit.0");
   EXPECT_NE(source().reading.performing().at(3)->at(body25::LeftHip), hip);
-  play("click flat.edit.0\nwait\nframes 3\nexpect_no flat.edit.0");
+  play("expect timeline.track.point.0\nclick flat.edit.0\nwait\nframes 3\nexpect_no flat.edit.0");
   EXPECT_EQ(source().reading.performing().at(3)->at(body25::LeftHip), hip);
 }
 
@@ -128,6 +128,16 @@ TEST_F(FlatPath, TheDialogExportsTheTakeAsPointsAndAsPictures) {
   EXPECT_EQ(picture.pixels, render::pose_picture({result().poses[8]}, made.canvas).pixels);
   EXPECT_TRUE(fs::exists(path("control/frame_00000.png")));
   EXPECT_FALSE(fs::exists(path("control/frame_00009.png"))) << "4n + 1";
+}
+
+TEST_F(FlatPath, ACharacterThatIsDroppedPerformsTheTrackAndIsExported) {
+  make(render::ContextKind::Null, {1280, 1600});
+  play("drop " + path("track") + "\nwait\nframes 3\ndrop " + path("target.obj") + "\nwait\nframes 3");
+  play("expect_value takes 1\nexpect_value frames 12\nexpect view.1.cube.front\nexpect_no view.0.cube.front");
+  ASSERT_EQ(session().takes[0].shown.poses.size(), 12u);
+  play("dialog.open export\nframes 3\nclick export.path\nkey Ctrl+A\ntype \"" + path("lifted.glb") +
+       "\"\nkey Enter\nframes 2\nclick export.save\nwait\nframes 3");
+  EXPECT_TRUE(fs::exists(path("lifted.glb")));
 }
 
 TEST_F(FlatPath, ATakeInSpaceIsExportedAsItsViewIsSeen) {

@@ -17,6 +17,9 @@ void draw_flat_source(const app::Session& session, PanelContext& context);
 /// Of the current take, which is flat.
 void draw_flat_take(const app::Session& session, PanelContext& context);
 
+/// "Frame 7: left wrist moved".
+std::string edit_words(const TrackEdit& edit);
+
 /// Which lengths of a person are uncertain and what would tell them, a sentence a limb: "Forearms are uncertain:
 /// seen end-on in the one picture. One in which they lie across the view would tell." Empty: none is.
 std::vector<std::string> cures_of(const app::FlatReference& reference);
