@@ -290,6 +290,9 @@ void draw_flat_source(const app::Session& session, PanelContext& context) {
     if (!clean->problem.empty()) warning_sentence(ui, clean->problem);
   }
   draw_performer(reading, context);
+  if (performs_in_space(session.document))
+    ask_choice(context, {"view.lifted", "Shown", "The picture, or the skeleton that characters perform"},
+               {"Flat", "Lifted"}, {"off", "on"}, on_off(session.view.lifted));
   const app::FlatSource& flat = *session.document.flat;
   ask_number(context,
              {"flat.smoothing", "Smoothing", "0: points stay where they were seen; 1: as the track jitters"},
