@@ -106,7 +106,7 @@ void set_flat_source(Call& c, const std::string& path);
 void set_flat(FlatTake& take, const std::string& setting, const ArgumentReader& value);
 /// Exchanges left and right of 2D poses: FIRST LAST [arms|legs|both].
 void exchange_flat_sides(Call& c);
-/// Whether a file can be the person in a picture who performs 2D poses: such poses themselves, proportions, or a
+/// Whether a file can be the person in a picture who performs 2D poses: such poses, proportions, or a
 /// picture with poses beside. Then the path of these.
 std::optional<std::string> flat_target_file(const std::string& path);
 

@@ -1,4 +1,4 @@
-// 2D poses, as the document wants them: read, put right and performed by the people of pictures, all in one job
+// 2D poses, as the document wants them: read, put right, performed by the people of pictures, in one job
 // in the background, anew at every change. What is costly, reading, is done once a file.
 #include <algorithm>
 #include <cmath>

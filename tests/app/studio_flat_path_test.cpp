@@ -112,9 +112,9 @@ TEST_F(FlatPath, TwoWaysAreComparedByAWipeSavedAndOpenedAgain) {
 TEST_F(FlatPath, TheDialogExportsTheTakeAsPointsAndAsPictures) {
   open_flat();
   const auto save_as = [&](int as, const std::string& to) {
-    play("dialog.open export\nframes 3\nclick export.as." + std::to_string(as) +
+    play("dialog.open export\nframes 3\nclick export.as\nframes 2\nclick export.as." + std::to_string(as) +
          "\nframes 2\nclick export.path\nkey Ctrl+A\ntype \"" + path(to) +
-         "\"\nkey Enter\nframes 2\nexpect_no export.bones\nclick export.save\nwait\nframes 3");
+         "\"\nkey Enter\nframes 2\nexpect_no export.bones\nwait\nframes 3");
   };
   save_as(4, "made.npz");
   const KeypointReading made = read_keypoints(path("made.npz"));
@@ -136,7 +136,7 @@ TEST_F(FlatPath, ACharacterThatIsDroppedPerformsTheTrackAndIsExported) {
   play("expect_value takes 1\nexpect_value frames 12\nexpect view.1.cube.front\nexpect_no view.0.cube.front");
   ASSERT_EQ(session().takes[0].shown.poses.size(), 12u);
   play("dialog.open export\nframes 3\nclick export.path\nkey Ctrl+A\ntype \"" + path("lifted.glb") +
-       "\"\nkey Enter\nframes 2\nclick export.save\nwait\nframes 3");
+       "\"\nkey Enter\nframes 2\nwait\nframes 3");
   EXPECT_TRUE(fs::exists(path("lifted.glb")));
 }
 
@@ -151,7 +151,7 @@ TEST_F(FlatPath, ATakeInSpaceIsExportedAsItsViewIsSeen) {
        "\nframes 3\nexpect export.camera\nclick export.camera.0\nclick export.as.1\nframes 2\nclick "
        "export.path\nkey "
        "Ctrl+A\ntype \"" +
-       path("near") + "\"\nkey Enter\nframes 2\nclick export.save\nwait\nframes 3");
+       path("near") + "\"\nkey Enter\nframes 2\nwait\nframes 3");
   play("view.camera 0 0 12\nframes 3\nexport.run 0 \"" + path("far") + "\" format=poses camera=view\nwait");
   const auto height = [&](const std::string& name) {
     const KeypointReading read = read_keypoints(path(name + ".json"));

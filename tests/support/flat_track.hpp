@@ -62,7 +62,7 @@ inline KeypointReading empty_track(int people = 1) {
   return track;
 }
 
-/// A person who walks `step` pixels a frame to the right; with several people, the others stand at the right, each
+/// A person who walks `step` pixels a frame to the right; of several, the others stand at the right, each
 /// `apart` pixels from the one before.
 inline KeypointReading walking_track(int frames, float step = 4, int people = 1, float apart = 150) {
   KeypointReading track = empty_track(people);
