@@ -44,6 +44,11 @@ StudioServices studio_services(const std::string& weights) {
     options.weights = weights;
     return nn::load_length_reader(nn::weights_folder(options));
   };
+  services.flat_engine = [weights](const std::string& name, bool touches) {
+    nn::NetworkOptions options;
+    options.weights = weights;
+    return nn::load_keypoint_transfer(options, name, touches);
+  };
   services.weights = [weights] {
     nn::NetworkOptions options;
     options.weights = weights;

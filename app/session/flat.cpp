@@ -35,6 +35,7 @@ struct FlatJob {
   std::string person;  // as SourceOptions'
   std::vector<Wanted> takes;
   std::function<std::shared_ptr<const LengthReader>()> load_lengths;
+  FlatEngineMaker make_engine;
 
   std::shared_ptr<const LengthReader> lengths;
   std::shared_ptr<const KeypointReading> raw;
@@ -98,6 +99,8 @@ FlatReference reference_of(const FlatJob::Wanted& take, const LengthReader& leng
   reference.told = reading.told;
   reference.target = flat_target(reading, lengths);
   reference.told.push_back("proportions are " + evidence_of(reference.target.lengths));
+  for (const std::string& remark : reference.target.remarks)
+    reference.told.push_back("who stands there " + remark);
   if (picture.empty()) return reference;
   reference.picture = std::make_shared<const Pixels>(decode_picture(read_file(picture)));
   reference.told.push_back("stands in " + file_name(picture));
@@ -143,10 +146,11 @@ void perform(FlatJob& work, FlatJob::Wanted& take) {
     FlatTarget target = reference->target;
     target.lengths = result.lengths;
     FlatOptions options;
+    options.engine = take.how.engine, options.growth = take.how.growth;
     options.place = take.how.place, options.touches = take.how.touches;
     FlatTrack track =
         perform_track(work.poses->reading, work.poses->clean, only_if(work.how.ahead, work.poses->lengths),
-                      target, options, *work.lengths);
+                      target, options, {work.lengths, work.make_engine});
     result.made = std::move(track.result);
     result.poses.resize(work.poses->clean.size());
     for (const TrackedPose& tracked : result.made.performing().poses)
@@ -238,6 +242,7 @@ void Studio::start_flat(std::string key) {
     if (const Take& take = document.takes[k]; take.flat)
       work->takes.push_back({b.take_ids[k], take.target.path, *take.flat, nullptr, "", false});
   work->load_lengths = services_.lengths;
+  work->make_engine = services_.flat_engine;
   if (const auto& last = b.flat_work) {
     work->lengths = last->lengths;
     if (last->raw_key == work->raw_key) work->raw = last->raw;

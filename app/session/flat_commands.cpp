@@ -40,10 +40,11 @@ std::optional<std::string> flat_target_file(const std::string& path) {
 }
 
 void set_flat(FlatTake& take, const std::string& setting, const ArgumentReader& value) {
-  ArgumentReader({setting}).one_of(0, "setting", {"engine", "place", "touches"});
-  if (setting == "engine") take.engine = value.one_of(0, "engine", {"limbs"});
+  ArgumentReader({setting}).one_of(0, "setting", {"engine", "place", "touches", "growth"});
+  if (setting == "engine") take.engine = value.one_of(0, "engine", names_of(flat_engines()));
   if (setting == "place") take.place = value.choice<FlatPlace>(0, "place", kFlatPlaceNames);
   if (setting == "touches") take.touches = value.on(0);
+  if (setting == "growth") take.growth = value.on(0);
 }
 
 void exchange_flat_sides(Call& c) {
@@ -186,6 +187,10 @@ void add_manner(Commands& commands) {
                     [](Call& c) { set_flat(flat_of(c), "place", ArgumentReader({c.word(1, "place")})); });
   commands.add_edit({"flat.touches", "Hands keep touching", "TAKE on|off"},
                     [](Call& c) { set_flat(flat_of(c), "touches", ArgumentReader({c.word(1, "switch")})); });
+  commands.add_edit({"flat.growth", "Who comes nearer grows", "TAKE on|off"},
+                    [](Call& c) { set_flat(flat_of(c), "growth", ArgumentReader({c.word(1, "switch")})); });
+  commands.add_edit({"flat.engine", "Engine of 2D poses", "TAKE " + names_of(flat_engines(), "|")},
+                    [](Call& c) { set_flat(flat_of(c), "engine", ArgumentReader({c.word(1, "engine")})); });
   commands.add_edit({"flat.ahead", "Read proportions ahead", "on|off: off the whole file, for them alone"},
                     [](Call& c) {
                       poses_of(c);

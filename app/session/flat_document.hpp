@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "retarget/base/fields.hpp"
+#include "retarget/pipeline/method_table.hpp"
 #include "retarget/pose2d/flat_placement.hpp"
 
 namespace understudy::app {
@@ -35,9 +36,10 @@ FieldsOf<S, ChosenLength> fields(V& visit, S& chosen) {
 
 /// Of a take whose target is a person in a picture.
 struct FlatTake {
-  std::string engine = "limbs";
+  std::string engine = flat_engines().front().name;
   FlatPlace place = FlatPlace::Reference;
   bool touches = true;                ///< hands that touch keep touching
+  bool growth = true;                 ///< who comes nearer grows
   std::string person;                 ///< who of the target's file, a number; empty: who is seen longest
   std::vector<ChosenLength> lengths;  ///< over those that are read off the picture; one a bone
 };
@@ -46,6 +48,7 @@ FieldsOf<S, FlatTake> fields(V& visit, S& flat) {
   visit("engine", flat.engine);
   visit("place", flat.place, kFlatPlaceNames);
   visit("touches", flat.touches);
+  visit("growth", flat.growth);
   visit("person", flat.person);
   visit("lengths", flat.lengths);
 }

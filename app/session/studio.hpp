@@ -5,6 +5,7 @@
 #include <memory>
 #include <string>
 
+#include "app/run/flat_performance.hpp"
 #include "app/session/commands.hpp"
 #include "app/session/frame_cache.hpp"
 #include "app/session/job_queue.hpp"
@@ -27,6 +28,7 @@ struct StudioServices {
   std::function<std::unique_ptr<Lifter>()> lifter;  ///< what lifts 2D poses; called off the UI thread
   /// what reads proportions off 2D poses; called off the UI thread, once
   std::function<std::shared_ptr<const LengthReader>()> lengths;
+  FlatEngineMaker flat_engine;           ///< as FlatTools have it; called off the UI thread
   std::function<std::string()> weights;  ///< checksums, for documents; called off the UI thread
   std::string samples;                   ///< folder of the bundled samples; empty: none
   std::string program;                   ///< that shows a study; empty: this one, once more
