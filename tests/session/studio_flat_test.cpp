@@ -60,7 +60,7 @@ TEST_F(FlatStudioTest, TheTakeIsTheVeryTrackOfTheCommandLine) {
   open_flat(studio);
   FlatOptions options;
   options.source.path = path("track"), options.target.path = path("tall.json");
-  const FlatPerformance made = perform_flat(options, SeenLengths());
+  const FlatPerformance made = perform_flat(options, {std::make_shared<const SeenLengths>(), {}});
   for (int t = 0; t < kCount; ++t)
     EXPECT_EQ(result(studio).poses[static_cast<size_t>(t)], *made.result.performing().at(t)) << t;
 }

@@ -184,6 +184,13 @@ void draw_manner(const app::Session& session, const app::Take& take, PanelContex
              {"flat.touches", "Touches", "Hands that touch the body or each other keep touching",
               "flat.touches " + k},
              take.flat->touches);
+  ask_toggle(
+      context,
+      {"flat.growth", "Grows", "Who comes nearer grows; off: as large as the reference", "flat.growth " + k},
+      take.flat->growth);
+  if (flat_engines().size() > 1)
+    ask_method(context, {"flat.engine", "Engine", help_of(flat_engines()), "flat.engine " + k},
+               flat_engines(), take.flat->engine);
   ask_number(context,
              {"flat.reference", "Picture", "How bright the picture behind is shown", "view.reference"},
              session.view.reference, {0, 1, 0.005f, "%.2f"});
