@@ -99,8 +99,6 @@ FlatReference reference_of(const FlatJob::Wanted& take, const LengthReader& leng
   reference.told = reading.told;
   reference.target = flat_target(reading, lengths);
   reference.told.push_back("proportions are " + evidence_of(reference.target.lengths));
-  for (const std::string& remark : reference.target.remarks)
-    reference.told.push_back("who stands there " + remark);
   if (picture.empty()) return reference;
   reference.picture = std::make_shared<const Pixels>(decode_picture(read_file(picture)));
   reference.told.push_back("stands in " + file_name(picture));

@@ -330,6 +330,8 @@ void draw_flat_take(const app::Session& session, PanelContext& context) {
         append_item(told, starts_with(sentence, path) ? sentence.substr(path.size()) : sentence, "; ");
       }
       hint(ui, told);
+      for (const std::string& remark : state->flat->reference->target.remarks)
+        warning_sentence(ui, "Who stands there " + remark + ".");
     }
     ask_button(context, {"take.replace", "Replace\u2026", "", "dialog.open replace_target"});
   }
