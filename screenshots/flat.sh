@@ -1,6 +1,6 @@
 #!/bin/bash
-# screenshots/flat.sh [WHAT...]: makes the pictures of 2D poses in this folder, 55 to 58. WHAT: dance (55), crowd (56), turn (57),
-# engines (58); without one all.
+# screenshots/flat.sh [WHAT...]: makes the pictures of 2D poses in this folder, 55 to 59. WHAT: dance (55), crowd (56), turn (57),
+# engines (58), studio (59); without one all.
 # Needs build/understudy, or $UNDERSTUDY, and what ./test installs (node, chromium). With the folder $OUT it makes PNGs there,
 # as tests do. DATA: a data folder (see train --data) whose CMU dance turns in picture 57, and whose people are in 58; without
 # it there is no 58, and the built-in dance in 57.
@@ -61,10 +61,16 @@ turn() {
   shown 57_flat_turn 1400
 }
 
-[ $# -gt 0 ] || set -- dance crowd turn
+# In the studio's window.
+studio() {
+  "$understudy" play screenshots/flat.us --out "$work"
+  shown 59_flat_studio 1280
+}
+
+[ $# -gt 0 ] || set -- dance crowd turn studio
 for what in "$@"; do
   case $what in
-    dance | crowd | turn) $what ;;
+    dance | crowd | turn | studio) $what ;;
     *) echo "flat.sh: no picture is called '$what'" >&2; exit 2 ;;
   esac
 done

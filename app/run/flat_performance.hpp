@@ -66,8 +66,8 @@ void write_proportions(const std::string& path, const Proportions& lengths);
 /// Throws Error naming the file.
 Proportions read_proportions(const std::string& path);
 
-/// The person who performs in the reading: their lengths, and how they stand in its picture where most of them
-/// is seen. Throws as proportions_of.
+/// The person who performs in the reading: their lengths, and how they stand where most of them is seen
+/// in its picture. Throws as proportions_of.
 FlatTarget flat_target(const KeypointReading& reading, const LengthReader& lengths);
 /// "from 12 poses; uncertain: left forearm": where lengths come from, and which nobody can be sure of.
 std::string evidence_of(const Proportions& lengths);
@@ -101,7 +101,7 @@ struct FlatTrack {
   Proportions source_lengths;  ///< as known in the last frame
   int64_t flagged = 0;
 };
-/// All frames, online. clean: of the reading's performer. source_lengths: read ahead; none: they are learned as
+/// All frames, online. clean: of the reading's performer. source_lengths: read ahead; none: learned as
 /// frames come. Throws Error.
 FlatTrack perform_track(const KeypointReading& source, const std::vector<CleanPose>& clean,
                         const std::optional<Proportions>& source_lengths, const FlatTarget& target,

@@ -127,6 +127,11 @@ inline const std::string& person_of(const Document& document, const Take& take) 
 inline bool performs_another(const Document& document, const Take& take) {
   return person_of(document, take) != document.source.person;
 }
+/// Whether any take is by a character: a source of 2D poses is lifted for it.
+inline bool performs_in_space(const Document& document) {
+  return std::any_of(document.takes.begin(), document.takes.end(),
+                     [](const Take& take) { return !take.flat; });
+}
 /// The first take of the source's own person by a character, by which the source's skeletons are repaired and
 /// smoothed; as many as there are takes: none.
 inline size_t take_of_source(const Document& document) {

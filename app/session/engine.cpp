@@ -80,7 +80,7 @@ struct TakeWork {
 
 Plan plan_of(const Document& document, const std::vector<int64_t>& take_ids) {
   Plan plan;
-  if (!document.flat) plan.source = document.source;
+  if (!document.flat || performs_in_space(document)) plan.source = document.source;
   plan.scan_edits = in_effect(document.scan_edits);
   plan.skeleton_edits = document.skeleton_edits;
   for (size_t k = 0; k < document.takes.size(); ++k) {

@@ -17,7 +17,7 @@ namespace {
 /// Of a flat take: the path's suffix says what is written.
 void export_flat(Call& c) {
   const std::string path = c.path(1);
-  const ExportChoice choice = export_choice(".json", {c.arguments.begin() + 2, c.arguments.end()});
+  const ExportChoice choice = export_choice("poses.json", {c.arguments.begin() + 2, c.arguments.end()});
   US_CHECK(choice.takes.empty(), "a file of 2D poses holds one take");
   const auto poses =
       std::make_shared<const KeypointReading>(exported_poses(c.session, c.take_number(), choice.poses.count));

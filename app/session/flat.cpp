@@ -1,4 +1,4 @@
-// 2D poses, as the document wants them: read, put right and performed by the people of pictures, all in one job
+// 2D poses, as the document wants them: read, put right, performed by the people of pictures, in one job
 // in the background, anew at every change. What is costly, reading, is done once a file.
 #include <algorithm>
 #include <cmath>
@@ -30,6 +30,8 @@ struct FlatJob {
   bool has_source = false;
   FlatSourceOptions source;
   FlatSource how;
+  float smoothing = 1;
+  std::vector<TrackEdit> source_edits;
   std::string person;  // as SourceOptions'
   std::vector<Wanted> takes;
   std::function<std::shared_ptr<const LengthReader>()> load_lengths;
@@ -65,11 +67,11 @@ FlatPoses poses_of(const FlatJob& work) {
   poses.reading = *work.raw;
   KeypointReading& reading = poses.reading;
   reading.performer = performer_of(reading, work.person);
-  exchange_sides(work.how.edits, reading.tracks[static_cast<size_t>(reading.performer)]);
+  exchange_sides(work.source_edits, reading.tracks[static_cast<size_t>(reading.performer)]);
   KeypointFilterOptions filter;
-  filter.smoothing = work.how.smoothing;
+  filter.smoothing = work.smoothing;
   poses.clean = clean_track(reading, reading.performer, filter);
-  drag_points(work.how.edits, poses.clean);
+  drag_points(work.source_edits, poses.clean);
   poses.lengths = proportions_of(reading, *work.lengths);
   for (const CleanPose& clean : poses.clean)
     poses.confidence.push_back(clean.is_usable ? mean_confidence(clean.pose) : 0);
@@ -79,10 +81,7 @@ FlatPoses poses_of(const FlatJob& work) {
 void read_source(FlatJob& work) {
   if (!work.has_source) return;
   if (!work.raw) {
-    FlatSourceOptions options = work.source;
-    if (!work.how.canvas.empty()) options.canvas = parse_canvas(work.how.canvas);
-    options.layout = work.how.layout;
-    work.raw = std::make_shared<const KeypointReading>(open_keypoints(options));
+    work.raw = std::make_shared<const KeypointReading>(open_keypoints(work.source));
   }
   if (!work.poses) work.poses = std::make_shared<const FlatPoses>(poses_of(work));
 }
@@ -100,8 +99,6 @@ FlatReference reference_of(const FlatJob::Wanted& take, const LengthReader& leng
   reference.told = reading.told;
   reference.target = flat_target(reading, lengths);
   reference.told.push_back("proportions are " + evidence_of(reference.target.lengths));
-  for (const std::string& remark : reference.target.remarks)
-    reference.told.push_back("who stands there " + remark);
   if (picture.empty()) return reference;
   reference.picture = std::make_shared<const Pixels>(decode_picture(read_file(picture)));
   reference.told.push_back("stands in " + file_name(picture));
@@ -147,7 +144,7 @@ void perform(FlatJob& work, FlatJob::Wanted& take) {
     FlatTarget target = reference->target;
     target.lengths = result.lengths;
     FlatOptions options;
-    options.engine = take.how.engine;
+    options.engine = take.how.engine, options.growth = take.how.growth;
     options.place = take.how.place, options.touches = take.how.touches;
     FlatTrack track =
         perform_track(work.poses->reading, work.poses->clean, only_if(work.how.ahead, work.poses->lengths),
@@ -210,7 +207,7 @@ void Studio::follow_flat() {
     session_.flat.poses.reset(), b.flat_key.clear(), b.flat_shown.clear();
     return;
   }
-  std::string key = key_of(document.flat, document.source.path, document.source.person, document.source.fps);
+  std::string key = key_of(document.flat, document.source);
   for (size_t k = 0; k < document.takes.size(); ++k)
     if (const Take& take = document.takes[k]; take.flat)
       key += key_of(b.take_ids[k], take.target.path, take.flat);
@@ -231,9 +228,13 @@ void Studio::start_flat(std::string key) {
   if (document.flat) {
     work->how = *document.flat;
     work->source.path = document.source.path, work->source.fps = document.source.fps;
+    work->source.layout = document.source.layout;
+    if (!document.source.canvas.empty()) work->source.canvas = parse_canvas(document.source.canvas);
     work->person = document.source.person;
-    work->raw_key = key_of(work->source.path, work->source.fps, work->how.canvas, work->how.layout);
-    work->poses_key = work->raw_key + key_of(work->person, work->how.smoothing, work->how.edits);
+    work->raw_key =
+        key_of(document.source.path, document.source.fps, document.source.canvas, document.source.layout);
+    work->smoothing = document.source.smoothing, work->source_edits = document.source.point_edits;
+    work->poses_key = work->raw_key + key_of(work->person, work->smoothing, work->source_edits);
   }
   for (size_t k = 0; k < document.takes.size(); ++k)
     if (const Take& take = document.takes[k]; take.flat)
@@ -296,13 +297,14 @@ void Studio::show_flat_source(const FlatJob& work) {
   const bool is_new = std::exchange(background_->flat_shown, work.raw_key) != work.raw_key;
   session_.flat.poses = work.poses;
   ++session_.flat.generation;
-  if (is_new) {
+  if (is_new) session_.playback.live = false;
+  if (performs_in_space(session_.document)) return;  // the engine lifts it, and tells
+  if (is_new || session_.source.name.empty()) {
     SourceOpened opened;
     opened.name = file_name(work.source.path);
     opened.fps = work.raw->fps;
     opened.count = ssize(work.raw->frames);
     take_in(opened);
-    session_.playback.live = false;
   }
   SourceFrames frames = source_frames(*work.poses);
   take_in(frames);

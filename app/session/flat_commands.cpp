@@ -19,9 +19,6 @@ void set_flat_source(Call& c, const std::string& path) {
   source.path = path;
   set_source(c, source);
   c.document.flat.emplace();
-  for (const Take& take : c.document.takes)
-    US_CHECK(take.flat, path, ": 2D poses are performed by people in pictures, not by ", take.name,
-             "; remove it first");
 }
 
 std::optional<std::string> flat_target_file(const std::string& path) {
@@ -43,15 +40,16 @@ std::optional<std::string> flat_target_file(const std::string& path) {
 }
 
 void set_flat(FlatTake& take, const std::string& setting, const ArgumentReader& value) {
-  ArgumentReader({setting}).one_of(0, "setting", {"engine", "place", "touches"});
-  if (setting == "engine") take.engine = value.one_of(0, "engine", {"limbs"});
+  ArgumentReader({setting}).one_of(0, "setting", {"engine", "place", "touches", "growth"});
+  if (setting == "engine") take.engine = value.one_of(0, "engine", names_of(flat_engines()));
   if (setting == "place") take.place = value.choice<FlatPlace>(0, "place", kFlatPlaceNames);
   if (setting == "touches") take.touches = value.on(0);
+  if (setting == "growth") take.growth = value.on(0);
 }
 
 void exchange_flat_sides(Call& c) {
   US_CHECK(c.document.flat, "the source is no file of 2D poses");
-  auto& edits = c.document.flat->edits;
+  auto& edits = c.document.source.point_edits;
   SidesExchange wanted;
   wanted.first = c.number<int>(0, "first frame"), wanted.last = c.number<int>(1, "last frame");
   US_CHECK(wanted.first >= 0 && wanted.last >= wanted.first, "frames ", wanted.first, " to ", wanted.last,
@@ -70,9 +68,9 @@ void exchange_flat_sides(Call& c) {
 
 namespace {
 
-FlatSource& source_of(Call& c) {
+SourceOptions& poses_of(Call& c) {
   US_CHECK(c.document.flat, "the source is no file of 2D poses");
-  return *c.document.flat;
+  return c.document.source;
 }
 
 FlatTake& flat_of(Call& c) {
@@ -189,15 +187,22 @@ void add_manner(Commands& commands) {
                     [](Call& c) { set_flat(flat_of(c), "place", ArgumentReader({c.word(1, "place")})); });
   commands.add_edit({"flat.touches", "Hands keep touching", "TAKE on|off"},
                     [](Call& c) { set_flat(flat_of(c), "touches", ArgumentReader({c.word(1, "switch")})); });
+  commands.add_edit({"flat.growth", "Who comes nearer grows", "TAKE on|off"},
+                    [](Call& c) { set_flat(flat_of(c), "growth", ArgumentReader({c.word(1, "switch")})); });
+  commands.add_edit({"flat.engine", "Engine of 2D poses", "TAKE " + names_of(flat_engines(), "|")},
+                    [](Call& c) { set_flat(flat_of(c), "engine", ArgumentReader({c.word(1, "engine")})); });
   commands.add_edit({"flat.ahead", "Read proportions ahead", "on|off: off the whole file, for them alone"},
-                    [](Call& c) { source_of(c).ahead = c.on(0); });
+                    [](Call& c) {
+                      poses_of(c);
+                      c.document.flat->ahead = c.on(0);
+                    });
   commands.add_slider({"flat.smoothing", "Smoothing of 2D poses", "FACTOR: 0 to 4, 1 as tuned"}, [](Call& c) {
-    source_of(c).smoothing = c.clamped(0, "factor", kFlatSmoothing.low, kFlatSmoothing.high);
+    poses_of(c).smoothing = c.clamped(0, "factor", kFlatSmoothing.low, kFlatSmoothing.high);
   });
   commands.add_edit({"flat.canvas", "Canvas of 2D poses", "WIDTHxHEIGHT|auto"}, [](Call& c) {
     const std::string& text = c.word(0, "canvas");
     if (text != "auto") parse_canvas(text);
-    source_of(c).canvas = text == "auto" ? "" : text;
+    poses_of(c).canvas = text == "auto" ? "" : text;
   });
 }
 
@@ -216,7 +221,7 @@ std::string words_of(std::string name) {
 
 /// A drag that goes on takes the place of the one before.
 void drag_point(Call& c) {
-  auto& edits = source_of(c).edits;
+  auto& edits = poses_of(c).point_edits;
   const auto& poses = c.session.flat.poses;
   US_CHECK(poses, "the source is still being read");
   PointDrag drag;
@@ -241,13 +246,13 @@ void add_by_hand(Commands& commands) {
   commands.add_edit({"flat.exchange", "Exchange left and right", "FIRST LAST [arms|legs|both]: frames"},
                     exchange_flat_sides);
   commands.add_edit({"flat.edit_remove", "Remove an edit of 2D poses", "NUMBER: from 0"}, [](Call& c) {
-    auto& edits = source_of(c).edits;
+    auto& edits = poses_of(c).point_edits;
     const auto number = c.number<int>(0, "number");
     US_CHECK(number >= 0 && number < ssize(edits), "there is no edit ", number);
     edits.erase(edits.begin() + number);
   });
   commands.add_edit({"flat.edits_clear", "Points as read", "forgets all edits of the source's points"},
-                    [](Call& c) { source_of(c).edits.clear(); });
+                    [](Call& c) { poses_of(c).point_edits.clear(); });
 }
 
 }  // namespace

@@ -6,28 +6,18 @@
 #include <vector>
 
 #include "retarget/base/fields.hpp"
-#include "retarget/keypoints/track_edits.hpp"
 #include "retarget/pipeline/method_table.hpp"
 #include "retarget/pose2d/flat_placement.hpp"
 
 namespace understudy::app {
 
-/// Of a source that is 2D poses. Who performs is SourceOptions::person.
+/// Of a source that is 2D poses, beside its SourceOptions.
 struct FlatSource {
-  std::string canvas;  ///< "1280x720"; empty: as the file, or a picture beside it, tells
-  std::string layout;  ///< name of a KeypointLayout; empty: as the file tells
-  float smoothing = 1;
   bool ahead = true;  ///< proportions are read off the whole file before its first frame
-  std::vector<TrackEdit> edits;
 };
-constexpr Within<float> kFlatSmoothing{0, 4};
 template <class V, class S>
 FieldsOf<S, FlatSource> fields(V& visit, S& flat) {
-  visit("canvas", flat.canvas);
-  visit("layout", flat.layout);
-  visit("smoothing", flat.smoothing, kFlatSmoothing);
   visit("ahead", flat.ahead);
-  visit("edits", flat.edits);
 }
 
 /// A bone's length as the user wants it.
@@ -49,6 +39,7 @@ struct FlatTake {
   std::string engine = flat_engines().front().name;
   FlatPlace place = FlatPlace::Reference;
   bool touches = true;                ///< hands that touch keep touching
+  bool growth = true;                 ///< who comes nearer grows
   std::string person;                 ///< who of the target's file, a number; empty: who is seen longest
   std::vector<ChosenLength> lengths;  ///< over those that are read off the picture; one a bone
 };
@@ -57,6 +48,7 @@ FieldsOf<S, FlatTake> fields(V& visit, S& flat) {
   visit("engine", flat.engine);
   visit("place", flat.place, kFlatPlaceNames);
   visit("touches", flat.touches);
+  visit("growth", flat.growth);
   visit("person", flat.person);
   visit("lengths", flat.lengths);
 }

@@ -145,7 +145,8 @@ bool is_flat_take(const Session& session, int take) {
 }
 
 bool is_canvas(const Session& session, int pane) {
-  return pane == 0 ? session.document.flat && !session.view.lifted : is_flat_take(session, pane - 1);
+  return pane == 0 ? session.document.flat && !(session.view.lifted && performs_in_space(session.document))
+                   : is_flat_take(session, pane - 1);
 }
 
 int frame_count(const Session& session) {
@@ -252,8 +253,9 @@ std::vector<BadFrame> bad_frames(const Session& session) {
   std::vector<BadFrame> bad;
   const auto usual = usual_lengths(session.source.frames);
   for (size_t i = 0; i < session.source.frames.size(); ++i) {
-    const std::string why =
-        badness(session.source.frames[i], seen_joints(session, static_cast<int>(i)), usual);
+    std::string why = badness(session.source.frames[i], seen_joints(session, static_cast<int>(i)), usual);
+    if (why.empty() && session.flat.poses && i < session.flat.poses->clean.size())
+      why = session.flat.poses->clean[i].problem;
     if (!why.empty()) bad.push_back({static_cast<int>(i), why});
   }
   return bad;

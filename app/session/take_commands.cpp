@@ -31,11 +31,6 @@ void check_fits(const Document& document) {
            ": is no file of 2D poses, and a person in a picture performs nothing else");
 }
 
-void check_performs_poses(const Document& document, const std::string& path) {
-  US_CHECK(!document.flat, path,
-           ": 2D poses are performed by people in pictures: 2D poses, too, or proportions");
-}
-
 bool is_edited(const Take& take) {
   return (take.flat && !take.flat->lengths.empty()) || !take.pose_edits.empty() ||
          !take.target_edits.joints.empty() || take.target_edits.weights ||
@@ -60,7 +55,6 @@ void add_targets(Commands& commands) {
       take.flat.emplace();
       check_fits(c.document);
     } else {
-      check_performs_poses(c.document, c.path(0));
       take.target.path =
           opened({&c.session.settings.recent_targets}, c.path(0), [&] { return target_file(c, 0); });
     }

@@ -145,6 +145,8 @@ ExportInput input_of(const Session& session, const std::vector<size_t>& takes, c
   for (const size_t k : takes) {
     const std::string& name = session.document.takes[k].name;
     US_CHECK(session.takes[k].problem.empty(), name, ": ", session.takes[k].problem);
+    US_CHECK(!session.document.takes[k].flat, name,
+             ": is 2D poses, which are exported by themselves: .mp4, a folder, .json, .csv or .npz");
     US_CHECK(session.takes[k].ready && session.takes[k].character && !session.takes[k].shown.poses.empty(),
              name, ": has no frames to export yet");
     add_clip(out, session, k, takes.size() > 1 ? name : clip_name(session, take));

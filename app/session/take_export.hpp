@@ -26,7 +26,8 @@ struct ExportChoice {
 /// morphs=COUNT, reduce=MM, in_place=on|off, root_motion=on|off, t_pose=on|off, keep_clips=on|off, of pose
 /// pictures camera=WORDS, canvas=WxH, rate=NUMBER, count=COUNT|4n+1, depth=on|off, normals=on|off,
 /// mask=on|off, points=openpose18|body25, stick_width=PIXELS, hide_limbs=on|off, whole_face=on|off,
-/// pose_file=controlnet|openpose|none (camera=view: as the take is seen now), and any number of take=NAME for more clips; without a format the path's suffix decides.
+/// pose_file=controlnet|openpose|none (camera=view: as the take is seen now), any number of take=NAME
+/// for more clips; without a format the path's suffix decides.
 /// Throws Error for any other.
 ExportChoice export_choice(const std::string& path, const std::vector<std::string>& words);
 
@@ -46,7 +47,7 @@ std::vector<size_t> takes_of_one_file(const Document& document, size_t take);
 std::vector<ExportInput> export_inputs(const Session& session, const std::vector<size_t>& takes,
                                        const ExportChoice& choice);
 
-/// Of a flat take: its poses without what trim leaves out, as many as the count says. Throws Error while there are
+/// Of a flat take: its poses without what trim leaves out, as the count says. Throws Error while there are
 /// none.
 KeypointReading exported_poses(const Session& session, size_t take, const PictureCount& count);
 

@@ -46,7 +46,7 @@ FieldsOf<S, CameraState> fields(V& visit, S& camera) {
   visit("orthographic", camera.orthographic);
 }
 
-/// What of a canvas is seen: the point of it in the view's middle, as shares of its sides, and how much larger it
+/// What of a canvas is seen: the point in the view's middle, as shares of its sides, and how much larger it
 /// is than whole.
 struct CanvasView {
   float x = 0.5f, y = 0.5f, zoom = 1;

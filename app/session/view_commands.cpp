@@ -299,6 +299,8 @@ void add_panes(Commands& commands) {
                  canvas.x = c.clamped(1, "x", -1.f, 2.f), canvas.y = c.clamped(2, "y", -1.f, 2.f);
                  canvas.zoom = c.clamped(3, "zoom", 0.1f, 50.f);
                });
+  commands.add({"view.lifted", "Source of 2D poses as lifted", "on|off|toggle"},
+               [](Call& c) { c.session.view.lifted = c.switched(0, c.session.view.lifted); });
   commands.add({"view.reference", "Brightness of the picture behind", "SHARE: 0 to 1"},
                [](Call& c) { c.session.view.reference = c.clamped(0, "share", 0.f, 1.f); });
   commands.add({"view.wipe", "Wipe line", "SHARE: 0 to 1 of the width"},

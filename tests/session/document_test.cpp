@@ -94,16 +94,19 @@ const Changes& document_changes() {
       CHANGE(scan_edits.cluster_gap_m += 1),
       CHANGE(skeleton_edits.pop_back()),
       CHANGE(flat.reset()),
-      CHANGE(flat->canvas.clear()),
-      CHANGE(flat->layout.clear()),
-      CHANGE(flat->smoothing = 1),
+      CHANGE(source.canvas.clear()),
+      CHANGE(source.layout.clear()),
+      CHANGE(source.stature = 1.7),
+      CHANGE(source.fov = 40),
+      CHANGE(source.smoothing = 1),
       CHANGE(flat->ahead = true),
-      CHANGE(flat->edits.pop_back()),
-      CHANGE(flat->edits[0] = SidesExchange{}),
+      CHANGE(source.point_edits.pop_back()),
+      CHANGE(source.point_edits[0] = SidesExchange{}),
       CHANGE(takes[1].flat.reset()),
       CHANGE(takes[1].flat->engine = "limbs"),
       CHANGE(takes[1].flat->place = FlatPlace::Reference),
       CHANGE(takes[1].flat->touches = true),
+      CHANGE(takes[1].flat->growth = true),
       CHANGE(takes[1].flat->person.clear()),
       CHANGE(takes[1].flat->lengths[0].bone = "trunk"),
       CHANGE(takes[1].flat->lengths[0].pixels = 1),
@@ -235,16 +238,17 @@ const Changes& document_changes() {
 /// Does not compile once a member is added: then it belongs into fields() and the changes above, too.
 [[maybe_unused]] void all_members_are_known() {
   [[maybe_unused]] const auto& [source, truth, scan, skeleton, flat_source, bones, takes] = Document();
-  [[maybe_unused]] const auto& [canvas, keypoint_layout, calm, ahead, point_edits] = FlatSource();
+  [[maybe_unused]] const auto& [ahead] = FlatSource();
   [[maybe_unused]] const auto& [point_frame, point, point_x, point_y, point_falloff] = PointDrag();
   [[maybe_unused]] const auto& [sides_first, sides_last, sides] = SidesExchange();
-  [[maybe_unused]] const auto& [flat_engine, place, touches, flat_person, flat_lengths] = FlatTake();
+  [[maybe_unused]] const auto& [flat_engine, place, touches, grows, flat_person, flat_lengths] = FlatTake();
   [[maybe_unused]] const auto& [bone, pixels, locked] = ChosenLength();
   [[maybe_unused]] const auto& [canvas_x, canvas_y, zoom] = CanvasView();
   [[maybe_unused]] const auto& [wanted, most, bone_edits, second] = OwnBones();
   [[maybe_unused]] const auto& [second_path, matches] = SecondBody();
   [[maybe_unused]] const auto& [path, motion, betas, fps, import, follow, as_scan, clip, source_bones, quiet,
-                                with_truth, person, times, complete, markers, made, people, recipe, edits] =
+                                with_truth, person, times, complete, markers, made, people, recipe,
+                                point_order, picture_size, stature, view_fov, calm, point_edits, edits] =
       SourceOptions();
   [[maybe_unused]] const auto& [parts, cycles, coder] = BlendRecipe();
   [[maybe_unused]] const auto& [part_path, part_range, part_weight, part_checksum] = BlendPart();
@@ -343,6 +347,11 @@ TEST(Document, WhatBelongsToOneRunIsNoMatter) {
 Document made_anew(Document document) {
   document.truth.clear();
   document.bones = {};  // they are found beside the frames
+  document.flat.reset();
+  auto& takes = document.takes;  // those of people in pictures are performed beside it
+  takes.erase(
+      std::remove_if(takes.begin(), takes.end(), [](const Take& take) { return take.flat.has_value(); }),
+      takes.end());
   for (Take& take : document.takes)
     take.name.clear(), take.target_edits.weights.reset(), take.pose_edits = {};
   return document;

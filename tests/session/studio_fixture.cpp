@@ -142,6 +142,7 @@ StudioServices StudioTest::services() {
     return networks;
   };
   services.motion_space = [] { return std::make_shared<LiftedSpace>(); };
+  services.lifter = [] { return std::make_unique<StandingLifter>(human_rest()); };
   services.lengths = [] { return std::make_shared<const SeenLengths>(); };
   services.weights = [] { return std::string("stand-ins:00000000"); };
   services.autosave_folder = path("state");

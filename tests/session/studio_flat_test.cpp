@@ -60,7 +60,7 @@ TEST_F(FlatStudioTest, TheTakeIsTheVeryTrackOfTheCommandLine) {
   open_flat(studio);
   FlatOptions options;
   options.source.path = path("track"), options.target.path = path("tall.json");
-  const FlatPerformance made = perform_flat(options, SeenLengths());
+  const FlatPerformance made = perform_flat(options, {std::make_shared<const SeenLengths>(), {}});
   for (int t = 0; t < kCount; ++t)
     EXPECT_EQ(result(studio).poses[static_cast<size_t>(t)], *made.result.performing().at(t)) << t;
 }
@@ -146,7 +146,7 @@ TEST_F(FlatStudioTest, ADocumentKeepsAllOfIt) {
   studio.wait_idle();
   const Document& document = studio.session().document;
   ASSERT_TRUE(document.flat && document.takes.at(0).flat);
-  EXPECT_EQ(document.flat->edits.size(), 2u);
+  EXPECT_EQ(document.source.point_edits.size(), 2u);
   EXPECT_EQ(document.takes[0].flat->place, FlatPlace::Source);
   EXPECT_EQ(result(studio).lengths.length[flat_bone::Trunk], 150);
   EXPECT_EQ(frame_count(studio.session()), kCount);
@@ -176,6 +176,36 @@ TEST_F(FlatStudioTest, WhatDoesNotFitIsSaidInASentence) {
   ASSERT_FALSE(studio.session().errors.empty());
   EXPECT_NE(studio.session().errors.back().text.find("broken.json"), std::string::npos);
   EXPECT_TRUE(studio.session().document.source.path.empty());
+}
+
+TEST_F(FlatStudioTest, ACharacterPerformsALiftedTrackBesideAPersonInAPicture) {
+  Studio studio(services());
+  open_flat(studio);
+  studio.run("open", {path("target.obj")});
+  studio.wait_idle();
+  const Session& session = studio.session();
+  ASSERT_TRUE(session.errors.empty()) << session.errors.front().text;
+  ASSERT_EQ(session.takes.size(), 2u);
+  EXPECT_FALSE(is_canvas(session, 2));
+  ASSERT_EQ(session.takes[1].shown.poses.size(), size_t{kCount});
+  const Vec3 way = session.takes[1].shown.poses[kCount - 1].root - session.takes[1].shown.poses[0].root;
+  EXPECT_GT(way.x(), 0.05f) << "it goes where the track goes";
+  EXPECT_EQ(result(studio).poses.size(), size_t{kCount});
+  EXPECT_FALSE(session.takes[0].series.empty());
+  studio.run("export.run", {"1", path("lifted.glb")});
+  studio.wait_idle();
+  EXPECT_TRUE(fs::exists(path("lifted.glb")));
+
+  studio.run("flat.drag", {"7", "mid_hip", "400", "230", "0"});
+  studio.wait_idle();
+  EXPECT_GT(session.takes[1].shown.poses[kCount - 1].root.x() - session.takes[1].shown.poses[0].root.x(),
+            way.x() + 0.1f)
+      << "what is put right by hand is lifted, too";
+  studio.run("target.remove", {"1"});
+  studio.run("flat.place", {"0", "source"});
+  studio.wait_idle();
+  EXPECT_TRUE(session.errors.empty());
+  EXPECT_EQ(frame_count(session), kCount);
 }
 
 TEST_F(FlatStudioTest, FiguresSayHowTheOrderOfPointsIsKept) {

@@ -1,12 +1,17 @@
 // Files of 2D poses, and a reader of lengths without a network.
 #pragma once
 
+#include <any>
 #include <cmath>
+#include <memory>
+#include <optional>
 #include <string>
+#include <utility>
 
 #include "retarget/base/error.hpp"
 #include "retarget/keypoints/keypoint_writers.hpp"
 #include "retarget/pipeline/keypoint_transfer.hpp"
+#include "retarget/pipeline/lifter.hpp"
 #include "retarget/pose2d/flat_placement.hpp"
 #include "tests/support/flat_person.hpp"
 
@@ -27,6 +32,27 @@ class SeenLengths final : public LengthReader {
   }
 };
 
+/// A person who stands as in T-pose and goes where the middle of the hips goes, a metre for 200 pixels.
+class StandingLifter final : public Lifter {
+ public:
+  explicit StandingLifter(Joints rest) : rest_(std::move(rest)) {}
+  void reset(const LiftView&) override { start_.reset(); }
+  Extraction push(const FlatPose& pose, float) override {
+    const float x = pose.at(body25::MidHip).x() / 200;
+    if (!start_) start_ = x;
+    Extraction seen;
+    seen.joints = rest_.rowwise() + Eigen::RowVector3f(x - *start_, 0, 0);
+    return seen;
+  }
+  std::any memory() const override { return start_; }
+  void restore(const std::any& memory) override { start_ = std::any_cast<std::optional<float>>(memory); }
+  std::string name() const override { return "standing"; }
+
+ private:
+  Joints rest_;
+  std::optional<float> start_;
+};
+
 /// A reading of nobody yet, on a canvas of 640 x 560.
 inline KeypointReading empty_track(int people = 1) {
   KeypointReading track;
@@ -36,7 +62,7 @@ inline KeypointReading empty_track(int people = 1) {
   return track;
 }
 
-/// A person who walks `step` pixels a frame to the right; with several people, the others stand at the right, each
+/// A person who walks `step` pixels a frame to the right; of several, the others stand at the right, each
 /// `apart` pixels from the one before.
 inline KeypointReading walking_track(int frames, float step = 4, int people = 1, float apart = 150) {
   KeypointReading track = empty_track(people);

@@ -132,7 +132,11 @@ app::Arguments draw_flat_rows(const app::FlatTake& base, app::FlatTake& other, U
     other.place = static_cast<FlatPlace>(place);
   toggle_row(ui, {"compare.touches", "Touches", "Hands that touch the body or each other keep touching"},
              other.touches);
+  toggle_row(ui, {"compare.growth", "Grows", "Who comes nearer grows"}, other.growth);
+  if (flat_engines().size() > 1) method_row(ui, {"compare.engine", "Engine"}, flat_engines(), other.engine);
   app::Arguments settings;
+  if (base.engine != other.engine) settings.push_back("engine=" + other.engine);
+  if (base.growth != other.growth) settings.push_back("growth=" + on_off(other.growth));
   if (base.place != other.place)
     settings.push_back(std::string("place=") + kFlatPlaceNames[static_cast<size_t>(other.place)]);
   if (base.touches != other.touches) settings.push_back("touches=" + on_off(other.touches));

@@ -48,7 +48,7 @@ std::string file_suffix_of(const ExportState& state) {
     if (state.is_flat) return kFlatSuffixes[static_cast<size_t>(state.flat_as)];
     const app::ExportFormat* const format = format_of(state);
     if (format != nullptr && format->is_pictures && state.as_pictures &&
-        file_suffix(format->suffix) == ".mp4")
+        format->suffix == std::string(".mp4"))
       return "";
     return format != nullptr ? format->suffix : ".csv";
   }
@@ -327,7 +327,7 @@ void draw_animation_rows(const app::Session& session, PanelContext& context, Exp
     if (format->is_character)
       draw_character_rows(ui, *made, own_bones && on_own_bones(*format, state), state);
     if (format->is_pictures) {
-      if (file_suffix(format->suffix) == ".mp4") draw_film_row(session, ui, state);
+      if (format->suffix == std::string(".mp4")) draw_film_row(session, ui, state);
       draw_pose_rows(ui, state);
     } else {
       draw_path_rows(ui, format->is_character, state.choice.file);

@@ -1,6 +1,6 @@
 // Rows of the export dialog about pose pictures and 2D poses.
-// Marks: export.as, export.camera, export.canvas, export.rate, export.count, export.points, export.stick_width,
-// export.hide_limbs, export.hide_face, export.pose_file, export.depth, export.normals, export.mask.
+// Marks: export.as, export.camera, export.canvas, export.rate, export.count, export.points,
+// export.stick_width, export.hide_limbs, export.hide_face, export.pose_file, export.depth, .normals, .mask.
 #pragma once
 
 #include <array>
@@ -9,7 +9,7 @@
 
 namespace understudy::ui {
 
-/// What a flat take is written as, in the order of the choices: a film, a folder of pictures, ControlNet's JSON,
+/// What a flat take is written as, in the order of the choices: a film, pictures, ControlNet's JSON,
 /// a table, an array.
 constexpr std::array<const char*, 5> kFlatSuffixes = {".mp4", "", ".json", ".csv", ".npz"};
 

@@ -184,6 +184,13 @@ void draw_manner(const app::Session& session, const app::Take& take, PanelContex
              {"flat.touches", "Touches", "Hands that touch the body or each other keep touching",
               "flat.touches " + k},
              take.flat->touches);
+  ask_toggle(
+      context,
+      {"flat.growth", "Grows", "Who comes nearer grows; off: as large as the reference", "flat.growth " + k},
+      take.flat->growth);
+  if (flat_engines().size() > 1)
+    ask_method(context, {"flat.engine", "Engine", help_of(flat_engines()), "flat.engine " + k},
+               flat_engines(), take.flat->engine);
   ask_number(context,
              {"flat.reference", "Picture", "How bright the picture behind is shown", "view.reference"},
              session.view.reference, {0, 1, 0.005f, "%.2f"});
@@ -197,31 +204,20 @@ void draw_manner(const app::Session& session, const app::Take& take, PanelContex
   }
 }
 
-std::string edit_words(const TrackEdit& edit) {
-  if (const auto* const drag = std::get_if<PointDrag>(&edit)) {
-    std::string point = kBodyPointNames[static_cast<size_t>(drag->point)];
-    std::replace(point.begin(), point.end(), '_', ' ');
-    return "Frame " + std::to_string(drag->frame) + ": " + point + " moved";
-  }
-  const SidesExchange& exchange = std::get<SidesExchange>(edit);
-  const char* limbs[] = {"arms", "legs", "left and right"};
-  return "Frames " + std::to_string(exchange.first) + " to " + std::to_string(exchange.last) + ": " +
-         limbs[static_cast<int>(exchange.limbs)] + " exchanged";
-}
-
-void draw_edits(const app::FlatSource& flat, PanelContext& context) {
+void draw_edits(const std::vector<TrackEdit>& edits, PanelContext& context) {
   Ui& ui = context.ui;
-  for (size_t i = 0; i < flat.edits.size(); ++i) {
+  for (size_t i = 0; i < edits.size(); ++i) {
     const std::string number = std::to_string(i);
     if (icon_button(ui, "flat.edit." + number, Icon::Trash, {"Remove this edit", "", false, false, 22}))
       context.ask("flat.edit_remove", {number});
     ImGui::SameLine(0, ui.px(6));
-    text_cut(ui, edit_words(flat.edits[i]));
+    text_cut(ui, edit_words(edits[i]));
   }
 }
 
 /// Over the loop marks, or the frame shown.
-void draw_by_hand(const app::Session& session, const app::FlatSource& flat, PanelContext& context) {
+void draw_by_hand(const app::Session& session, PanelContext& context) {
+  const auto& edits = session.document.source.point_edits;
   Ui& ui = context.ui;
   const int frame = std::max(0, app::shown_frame(session));
   const bool marked = session.playback.in >= 0 && session.playback.out >= session.playback.in;
@@ -235,9 +231,9 @@ void draw_by_hand(const app::Session& session, const app::FlatSource& flat, Pane
   ask_button(context,
              {"flat.exchange", "Exchange sides " + words,
               "Left and right, between the loop marks where they are set", "flat.exchange " + range});
-  draw_edits(flat, context);
-  if (flat.edits.empty()) return;
-  ask_button(context, {"flat.edits_clear", "Points as read", "Forgets all edits of points"});
+  draw_edits(edits, context);
+  if (edits.empty()) return;
+  ask_button(context, {"edits_clear", "Points as read", "Forgets all edits of points"});
   hint(ui, "What is dragged or exchanged is performed at once.");
 }
 
@@ -254,6 +250,18 @@ void draw_performer(const KeypointReading& reading, PanelContext& context) {
 }
 
 }  // namespace
+
+std::string edit_words(const TrackEdit& edit) {
+  if (const auto* const drag = std::get_if<PointDrag>(&edit)) {
+    std::string point = kBodyPointNames[static_cast<size_t>(drag->point)];
+    std::replace(point.begin(), point.end(), '_', ' ');
+    return "Frame " + std::to_string(drag->frame) + ": " + point + " moved";
+  }
+  const SidesExchange& exchange = std::get<SidesExchange>(edit);
+  const char* limbs[] = {"arms", "legs", "left and right"};
+  return "Frames " + std::to_string(exchange.first) + " to " + std::to_string(exchange.last) + ": " +
+         limbs[static_cast<int>(exchange.limbs)] + " exchanged";
+}
 
 std::vector<std::string> cures_of(const app::FlatReference& reference) {
   const Proportions& lengths = reference.target.lengths;
@@ -289,16 +297,20 @@ void draw_flat_source(const app::Session& session, PanelContext& context) {
     if (!clean->problem.empty()) warning_sentence(ui, clean->problem);
   }
   draw_performer(reading, context);
+  if (performs_in_space(session.document))
+    ask_choice(context, {"view.lifted", "Shown", "The picture, or the skeleton that characters perform"},
+               {"Flat", "Lifted"}, {"off", "on"}, on_off(session.view.lifted));
   const app::FlatSource& flat = *session.document.flat;
   ask_number(context,
              {"flat.smoothing", "Smoothing", "0: points stay where they were seen; 1: as the track jitters"},
-             flat.smoothing, {app::kFlatSmoothing.low, app::kFlatSmoothing.high, 0.01f, "%.2f", 1, true});
+             session.document.source.smoothing,
+             {app::kFlatSmoothing.low, app::kFlatSmoothing.high, 0.01f, "%.2f", 1, true});
   ask_toggle(context,
              {"flat.ahead", "Read ahead",
               "Proportions are read off the whole file before its first frame, so "
               "that limbs do not grow while it plays"},
              flat.ahead);
-  draw_by_hand(session, flat, context);
+  draw_by_hand(session, context);
 }
 
 void draw_flat_take(const app::Session& session, PanelContext& context) {
@@ -318,6 +330,8 @@ void draw_flat_take(const app::Session& session, PanelContext& context) {
         append_item(told, starts_with(sentence, path) ? sentence.substr(path.size()) : sentence, "; ");
       }
       hint(ui, told);
+      for (const std::string& remark : state->flat->reference->target.remarks)
+        warning_sentence(ui, "Who stands there " + remark + ".");
     }
     ask_button(context, {"take.replace", "Replace\u2026", "", "dialog.open replace_target"});
   }

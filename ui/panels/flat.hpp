@@ -1,8 +1,8 @@
 // Sections of the inspector about 2D poses: the source's track, and the person in a picture who performs it.
 // Marks: source.person, flat.ahead, flat.smoothing, flat.exchange, flat.edits_clear, flat.edit.K;
-// inspector.proportions, inspector.manner (sections), flat.length.BONE, flat.lock.BONE, flat.bar.BONE, flat.smaller,
-// flat.larger, flat.lengths_clear, flat.load, flat.save, flat.cure, flat.place, flat.touches, flat.engine,
-// flat.reference.
+// inspector.proportions, inspector.manner (sections), flat.length.BONE, flat.lock.BONE, flat.bar.BONE,
+// flat.smaller, flat.larger, flat.lengths_clear, flat.load, flat.save, flat.cure, flat.place, flat.touches,
+// flat.engine, flat.reference.
 #pragma once
 
 #include <string>
@@ -17,7 +17,10 @@ void draw_flat_source(const app::Session& session, PanelContext& context);
 /// Of the current take, which is flat.
 void draw_flat_take(const app::Session& session, PanelContext& context);
 
-/// Which lengths of a person are uncertain and what would tell them, a sentence a limb: "Forearms are uncertain:
+/// "Frame 7: left wrist moved".
+std::string edit_words(const TrackEdit& edit);
+
+/// Which lengths of a person are uncertain and what would tell, a sentence each: "Forearms are uncertain:
 /// seen end-on in the one picture. One in which they lie across the view would tell." Empty: none is.
 std::vector<std::string> cures_of(const app::FlatReference& reference);
 

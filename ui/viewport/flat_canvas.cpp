@@ -237,7 +237,7 @@ void FlatCanvas::use_left(const Session& session, const PaneContent& pane, const
     context.ask("source.person", {std::to_string(person)});
 }
 
-/// The wheel zooms about the pointer; what is dragged otherwise moves the canvas; a double click shows it whole.
+/// The wheel zooms about the pointer; what is dragged otherwise moves it; a double click shows all of it.
 void FlatCanvas::steer(const Session& session, const PaneContent& pane, const Rect& rect, const Pointer& now,
                        PanelContext& context) {
   const Canvas canvas = canvas_of_pane(session, pane);

@@ -19,7 +19,7 @@ using MovedPoint = std::pair<int, Vec2>;
 
 /// The canvas of a pane: of the source, or of its first take; unknown as long as nothing is read.
 Canvas canvas_of_pane(const app::Session& session, const PaneContent& pane);
-/// What is on it in the frame shown: of the source everybody faintly and the performer in OpenPose's colours; of a
+/// What is on it in the frame shown: of the source all faintly, the performer in OpenPose's colours; of a
 /// take the very picture that is exported, where it is black the reference's own picture, dimmed. At most
 /// kLargestPicture wide and high. Empty: there is none.
 render::Image canvas_picture(const app::Session& session, const PaneContent& pane,
@@ -35,7 +35,7 @@ class FlatCanvas {
   /// Uses the item just made, which is the pane's.
   void interact(const app::Session& session, const PaneContent& pane, const Rect& rect,
                 PanelContext& context);
-  /// Draws into `part` of the pane. `view`: what is seen of the canvas. Marks: "view.0.point.NAME" of points that
+  /// Draws into `part` of the pane. Marks: "view.0.point.NAME" of those that
   /// can be dragged, "view.0.person.N" over people.
   void draw(const app::Session& session, const PaneContent& pane, const Rect& rect, const Rect& part,
             PanelContext& context);
