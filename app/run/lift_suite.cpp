@@ -1,6 +1,7 @@
 #include "app/run/lift_suite.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 
 #include "app/run/case_writer.hpp"
@@ -60,6 +61,15 @@ std::vector<Pose> before(const Pinhole& camera, std::vector<Pose> poses) {
   return poses;
 }
 
+/// Vertical, degrees; the narrowest that a lifter takes where there is no perspective.
+NpyArray fov_of(const Pinhole& camera) {
+  const float fov = 2 * std::atan(camera.centre.y() / camera.focal) * 180 / kPi;
+  NpyArray array;
+  array.shape = {1};
+  array.values = {camera.orthographic ? 1 : fov};
+  return array;
+}
+
 std::vector<Joints> joints_of(const Joints& rest, const std::vector<Pose>& poses) {
   std::vector<Joints> joints;
   for (const Pose& pose : poses) joints.push_back(forward_kinematics(rest, pose).joints);
@@ -108,6 +118,7 @@ int make_lift_suite(const SuiteOptions& options, const std::function<void(const 
               {"joints", frames_array(joints_of(cast.person(b).rest, shown), {kJointCount, 3})},
               {"target_joints", frames_array(std::vector<Joints64>{target.joints}, {kJointCount, 3})}};
     truth["target_joints"].shape = {kJointCount, 3};
+    truth["fov_deg"] = fov_of(camera);
     for (const bool noisy : {false, true}) {
       const std::string name = printed("%03d_%s", pair, noisy ? "noisy" : "clean");
       write_lift_case(fs::path(options.out) / name, seen_by(camera, source, poses, noisy, rng), target, truth,
