@@ -333,4 +333,38 @@ Image strip(const std::vector<StripRow>& performers, const std::vector<double>& 
   return strip(renderer, performers, seconds, options);
 }
 
+int picture_width(const StripOptions& options, int columns) {
+  const int across = std::max(1, std::min(columns, options.columns));
+  return (options.width - 2 * kMargin - kGutter - (across - 1) * kGap) / across;
+}
+
+Image picture_sheet(const std::vector<PictureRow>& rows, const std::vector<std::string>& headers,
+                    const StripOptions& options) {
+  US_CHECK(!rows.empty() && !headers.empty(), "a sheet of pictures needs one");
+  const int count = static_cast<int>(headers.size()), columns = std::min(options.columns, count);
+  const int width = picture_width(options, count);
+  Layout layout{columns, (count + columns - 1) / columns, kHeader, kHeader, 1};
+  for (const PictureRow& row : rows) {
+    US_CHECK(row.pictures.size() == headers.size(), row.caption, ": has ", row.pictures.size(),
+             " pictures, the sheet ", headers.size());
+    layout.band_height += row.pictures[0].height + kGap;
+  }
+  const Font font = Font::system();
+  const int band = layout.band_height + kBandGap, top = options.title.empty() ? kMargin / 2 : kTitle;
+  Image sheet(options.width, top + layout.bands * band - kBandGap + kMargin - kGap, kPaper);
+  draw_title(sheet, font, options.title, /*sides=*/false);
+  for (int i = 0; i < count; ++i) {
+    const int x = kMargin + kGutter + i % columns * (width + kGap);
+    int y = top + i / columns * band + kHeader;
+    const size_t at = static_cast<size_t>(i);
+    draw_header(sheet, font, {headers[at], ""}, {x + 2, y - kHeader * 0.32f}, layout, width);
+    for (const PictureRow& row : rows) {
+      paste(sheet, row.pictures[at], x, y);
+      if (i % columns == 0) draw_caption(sheet, font, row.caption, {kMargin - 4, y}, row.pictures[at].height);
+      y += row.pictures[at].height + kGap;
+    }
+  }
+  return sheet;
+}
+
 }  // namespace understudy::render

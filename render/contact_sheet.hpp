@@ -63,4 +63,17 @@ Image strip(Renderer& renderer, const std::vector<StripRow>& rows, const std::ve
 Image strip(const std::vector<StripRow>& rows, const std::vector<double>& seconds,
             const StripOptions& options = {});
 
+/// Pictures that are there already, all of one width and in a row of one height.
+struct PictureRow {
+  std::string caption;
+  std::vector<Image> pictures;
+};
+
+/// A row each below `headers`, one a column; no more columns than options.columns, more go on below.
+/// Throws Error where a row has not a picture for each header, and without a row.
+Image picture_sheet(const std::vector<PictureRow>& rows, const std::vector<std::string>& headers,
+                    const StripOptions& options = {});
+/// How wide they are in a sheet of so many columns, pixels.
+int picture_width(const StripOptions& options, int columns);
+
 }  // namespace understudy::render

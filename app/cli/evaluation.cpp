@@ -494,13 +494,14 @@ Evaluation evaluate(const EvalOptions& options, const std::function<void(const C
   }
   evaluation.mean = mean_metrics(metrics);
   set_gap_means(evaluation);
+  if (bench.flat) evaluation.flat_engine = flat_engine(options.how);
   if (bench.style) evaluation.style = bench.style->summary();
   return evaluation;
 }
 
 Json report_of(const EvalOptions& options, const Evaluation& evaluation) {
   Json report = report_header(nn::weights_folder(network_options(options.how)));
-  report["engine"] = options.how.method.engine;
+  report["engine"] = evaluation.flat_engine.empty() ? options.how.method.engine : evaluation.flat_engine;
   if (!options.oracle.empty()) report["oracle"] = options.oracle;
   if (options.edits.floor) report["remove_floor"] = true;
   if (options.edits.largest_cluster) report["largest_part"] = true;

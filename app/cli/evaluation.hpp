@@ -50,8 +50,9 @@ struct CaseResult {
 struct Evaluation {
   std::vector<CaseResult> results;
   Breakdown breakdown;
-  Json style;    ///< StyleEvaluation::summary()
-  Metrics mean;  ///< over cases; what GapScore has is of all their gaps alike
+  Json style;               ///< StyleEvaluation::summary()
+  std::string flat_engine;  ///< where cases are 2D poses
+  Metrics mean;             ///< over cases; what GapScore has is of all their gaps alike
   Latency latency;
   bool failed = false;  ///< some case
 };

@@ -13,9 +13,11 @@
 #include "app/cli/progress.hpp"
 #include "app/run/export_presets.hpp"
 #include "app/run/exports.hpp"
+#include "app/run/flat_performance.hpp"
 #include "app/run/interrupt.hpp"
 #include "app/run/report.hpp"
 #include "app/run/retargeted_source.hpp"
+#include "app/session/document_file.hpp"
 #include "app/session/take_export.hpp"
 #include "retarget/base/error.hpp"
 #include "retarget/base/log.hpp"
@@ -318,9 +320,27 @@ int print_map(const ExportOptions& options) {
   return 0;
 }
 
+/// The document's take that is asked for, where it is of 2D poses. False: it is not.
+bool export_flat_take(const ExportOptions& options) {
+  if (options.document.empty() || options.takes.size() > 1 || options.all_takes) return false;
+  const Document document = read_document(options.document).document;
+  const size_t take = options.takes.empty() ? 0 : take_called(document, options.takes[0], 1);
+  if (take >= document.takes.size() || !document.takes[take].flat) return false;
+  const auto studio = open_document(options);
+  check_not_read(options.out, files_read_by(document));
+  studio->wait_idle();
+  const Session& session = studio->session();
+  US_CHECK(session.errors.empty(), session.errors.front().text);
+  const KeypointReading poses = exported_poses(session, take, options.poses.count);
+  write_flat(options.out, poses, options.poses);
+  std::printf("%s %zu frames\n", options.out.c_str(), poses.frames.size());
+  return true;
+}
+
 int run_export(const ExportOptions& options) {
   if (options.print_map) return print_map(options);
   US_CHECK(!options.out.empty(), "--out is required: the file to write");
+  if (export_flat_take(options)) return 0;
   if (options.all_takes) return export_takes(options);
   const ExportFormat& format = export_format(options.format, options.out);
   US_CHECK(options.preview.empty() || format.is_character, options.preview,

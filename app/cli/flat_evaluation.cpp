@@ -9,7 +9,6 @@
 #include "retarget/base/error.hpp"
 #include "retarget/base/index.hpp"
 #include "retarget/metrics/keypoint_metrics.hpp"
-#include "retarget/networks/networks.hpp"
 #include "retarget/pose2d/limb_transfer.hpp"
 
 namespace understudy::app {
@@ -128,21 +127,21 @@ void add_baselines(const Case& c, const Poses& source, const Poses& known, const
 }  // namespace
 
 FlatEvaluation::FlatEvaluation(const EvalOptions& options)
-    : lengths_(nn::load_length_reader(nn::weights_folder(network_options(options.how)))) {}
+    : engine_(flat_engine(options.how)), tools_(flat_tools(options.how)) {}
 
 void FlatEvaluation::evaluate(const Case& c, CaseResult& result) const {
   FlatOptions options;
   options.source.path = c.source, options.target.path = c.target;
-  options.touches = false;
+  options.engine = engine_, options.touches = false;
   const auto began = std::chrono::steady_clock::now();
-  const FlatPerformance performed = perform_flat(options, *lengths_);
+  const FlatPerformance performed = perform_flat(options, tools_);
   FrameTimes times;
   times.transfer = times.total = ms_since(began) / static_cast<double>(performed.result.frames.size());
   const Poses source = poses_of(performed.source), made = poses_of(performed.result),
               truth = poses_of(read_keypoints(c.truth)), known = poses_of(read_keypoints(c.target));
   US_CHECK(truth.size() == made.size(), c.truth, ": has ", truth.size(), " frames, the source ", made.size());
   options.touches = true;
-  const Poses touching = poses_of(perform_flat(options, *lengths_).result);
+  const Poses touching = poses_of(perform_flat(options, tools_).result);
   for (size_t t = 0; t < made.size(); ++t) result.latency.add(times);
   result.frames = ssize(made), result.flagged = performed.flagged;
 

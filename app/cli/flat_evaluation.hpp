@@ -17,12 +17,13 @@ namespace understudy::app {
 /// oks_true (the true ratios: the limit).
 class FlatEvaluation {
  public:
-  /// Throws Error where the network cannot be loaded.
+  /// Throws Error where a network cannot be loaded, and where --engine is for what moves in space.
   explicit FlatEvaluation(const EvalOptions& options);
   void evaluate(const Case& c, CaseResult& result) const;
 
  private:
-  std::unique_ptr<LengthReader> lengths_;
+  std::string engine_;
+  FlatTools tools_;
 };
 
 }  // namespace understudy::app

@@ -1,6 +1,8 @@
 #include "app/cli/flat_job.hpp"
 
 #include <CLI/CLI.hpp>
+#include <cstdio>
+#include <filesystem>
 
 #include "app/run/exports.hpp"
 #include "app/run/keypoint_source.hpp"
@@ -13,8 +15,9 @@
 namespace understudy::app {
 namespace {
 
-void write_flat_report(const std::string& path, const FlatPerformance& made, const std::string& weights) {
-  Json json = report_header(weights);
+void write_flat_report(const std::string& path, const FlatPerformance& made, const MethodOptions& how) {
+  Json json = report_header(nn::weights_folder(network_options(how)));
+  json["engine"] = flat_engine(how);
   json["source"] = {{"path", made.source.path},
                     {"format", made.source.format},
                     {"layout", made.source.layout},
@@ -30,6 +33,13 @@ void write_flat_report(const std::string& path, const FlatPerformance& made, con
     if (!frame.problem.empty()) problems.push_back({{"frame", frame.number}, {"problem", frame.problem}});
   json["problems"] = problems;
   write_json(path, json);
+}
+
+/// One line for each frame as it is finished, for programs that follow along.
+void tell_live(const KeypointFrame& frame) {
+  std::printf("frame %lld %s\n", static_cast<long long>(frame.number),
+              frame.problem.empty() ? "good" : frame.problem.c_str());
+  std::fflush(stdout);
 }
 
 }  // namespace
@@ -50,17 +60,30 @@ void add_flat_options(CLI::App& command, FlatOptions& flat) {
       ->check(CLI::IsMember({kFlatPlaceNames[0], kFlatPlaceNames[1]}));
   command.add_flag_callback(
       "--let-go", [&flat] { flat.touches = false; }, "of 2D poses: hands need not touch what they touched");
+  command
+      .add_option("--smoothing", flat.smoothing,
+                  "of 2D poses: 0, points stay where they were seen; 1, as tuned (default); 2, half the "
+                  "jitter, later")
+      ->check(CLI::Range(0.0f, 4.0f));
+  command.add_flag_callback(
+      "--no-growth", [&flat] { flat.growth = false; },
+      "of 2D poses: the result stays of one size where the source comes nearer or goes away");
   command.add_flag_callback(
       "--no-look-ahead", [&flat] { flat.ahead = false; },
       "of 2D poses: the source's proportions are learned as its frames come");
 }
 
 bool is_flat_job(const JobOptions& job) {
-  return is_keypoint_source(job.source) &&
+  // A folder that is still being written may have no pose in it yet; the target tells, then.
+  std::error_code failed;
+  const bool may_come = job.source.follow && std::filesystem::is_directory(job.source.path, failed) &&
+                        std::filesystem::is_empty(job.source.path, failed);
+  return (may_come || is_keypoint_source(job.source)) &&
          (is_proportions_file(job.target.path) || looks_like_keypoints(job.target.path));
 }
 
 void run_flat_job(const JobOptions& job, FlatOptions flat) {
+  flat.engine = flat_engine(job.how);
   flat.source.path = job.source.path;
   flat.source.fps = job.source.fps;
   if (job.poses.canvas) flat.source.canvas = *job.poses.canvas;
@@ -68,15 +91,18 @@ void run_flat_job(const JobOptions& job, FlatOptions flat) {
   flat.source.layout = job.source.layout;
   flat.target.path = job.target.path;
   check_not_read(job.out, {flat.source.path, flat.target.path});
+  US_CHECK(!job.source.follow || std::filesystem::is_directory(flat.source.path), flat.source.path,
+           ": only a folder of 2D poses can be followed");
   US_CHECK(job.preview.empty() && job.skeletons.empty(),
            "2D poses have no --preview and no --skeletons: --out writes them");
-  const auto network = nn::load_length_reader(nn::weights_folder(network_options(job.how)));
-  const FlatPerformance made = perform_flat(flat, *network);
+  const FlatTools tools = flat_tools(job.how);
+  const FlatPerformance made =
+      job.source.follow ? follow_flat(flat, tools, tell_live) : perform_flat(flat, tools);
   for (const std::string& sentence : made.told) log::info(sentence);
   if (made.flagged > 0)
     log::warn(grouped(made.flagged) + " frames could not be used and repeat the pose before");
   if (!job.out.empty()) write_flat(job.out, made.result, job.poses);
-  if (!job.report.empty()) write_flat_report(job.report, made, nn::weights_folder(network_options(job.how)));
+  if (!job.report.empty()) write_flat_report(job.report, made, job.how);
 }
 
 }  // namespace understudy::app

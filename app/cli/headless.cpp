@@ -31,6 +31,8 @@ std::unique_ptr<Studio> headless_studio(const std::string& weights) {
   services.motion_space = program.motion_space;
   services.motion_coder = program.motion_coder;
   services.lifter = program.lifter;
+  services.lengths = program.lengths;
+  services.flat_engine = program.flat_engine;
   return std::make_unique<Studio>(std::move(services));
 }
 

@@ -178,10 +178,26 @@ void add_target_options(CLI::App& command, TargetOptions& target) {
       "turns the target about y, degrees (default: so that it faces forward)");
 }
 
+namespace {
+
+/// Of both kinds; what the source is decides which of them may be asked for.
+std::vector<std::string> engine_names() {
+  std::vector<std::string> names = names_of(engines());
+  for (std::string& name : names_of(flat_engines()))
+    if (index_of(engines(), name) < 0) names.push_back(std::move(name));
+  return names;
+}
+
+}  // namespace
+
 void add_method_options(CLI::App& command, MethodOptions& how) {
   Method& method = how.method;
-  command.add_option("--engine", method.engine, "motion transfer; " + help_of(engines()))
-      ->check(CLI::IsMember(names_of(engines())));
+  command
+      .add_option_function<std::string>(
+          "--engine",
+          [&how](const std::string& name) { how.method.engine = name, how.engine_is_asked = true; },
+          "motion transfer; " + help_of(engines()) + "; of 2D poses " + help_of(flat_engines()))
+      ->check(CLI::IsMember(engine_names()));
   command.add_option("--extractor", method.extractor, "skeleton extraction; " + help_of(extractors()))
       ->check(CLI::IsMember(names_of(extractors())));
   std::map<std::string, RootMode> roots;
@@ -225,6 +241,18 @@ void add_method_options(CLI::App& command, MethodOptions& how) {
                      "weights file of the engine in place of the folder's");
   command.add_option("--extractor-weights", how.extractor_file,
                      "weights file of the extractor in place of the folder's");
+}
+
+std::string flat_engine(const MethodOptions& how) {
+  return flat_engine_named(how.engine_is_asked ? how.method.engine : flat_engines().front().name).name;
+}
+
+FlatTools flat_tools(const MethodOptions& how) {
+  const nn::NetworkOptions options = network_options(how);
+  return {nn::load_length_reader(nn::weights_folder(options)),
+          [options](const std::string& name, bool touches) {
+            return nn::load_keypoint_transfer(options, name, touches);
+          }};
 }
 
 void add_tempo_options(CLI::App& command, TempoChoice& tempo) {

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "app/run/flat_performance.hpp"
 #include "app/run/method.hpp"
 #include "app/run/pose_choice.hpp"
 #include "app/run/source.hpp"
@@ -35,8 +36,13 @@ struct MethodOptions {
   std::string weights;                      ///< folder; empty: beside the program
   std::string engine_file, extractor_file;  ///< in place of the folder's; empty: the folder's
   std::vector<BoneTurn> rest_pose;          ///< of the target
+  bool engine_is_asked = false;             ///< by its name; else it is the default of what the source is
 };
 void add_method_options(CLI::App& command, MethodOptions& how);
+/// The engine of 2D poses: --engine, or the default. Throws Error where --engine is for what moves in space.
+std::string flat_engine(const MethodOptions& how);
+/// Loaded with the weights that `how` says.
+FlatTools flat_tools(const MethodOptions& how);
 /// --tempo and --delay.
 void add_tempo_options(CLI::App& command, TempoChoice& tempo);
 /// As --rest-pose takes it: "left_shoulder=0,0,-30".

@@ -70,7 +70,9 @@ ReportRow row_from(const Json& json, const fs::path& folder) {
   US_CHECK(std::find(std::begin(kTables), std::end(kTables), row.table) != std::end(kTables),
            "there is no table \"", row.table, "\"");
   MethodOptions& how = row.eval.how;
-  engine_named(how.method.engine);  // throw where there is none
+  how.engine_is_asked = json.contains("engine");
+  if (index_of(flat_engines(), how.method.engine) < 0)
+    engine_named(how.method.engine);  // throws where none is
   extractor_named(how.method.extractor);
   motion_space_named(row.eval.fill);
   for (std::string* path : {&how.weights, &how.engine_file, &how.extractor_file})

@@ -6,8 +6,10 @@
 #include <optional>
 
 #include "app/cli/commands.hpp"
+#include "app/cli/pose_rows.hpp"
 #include "app/cli/studio.hpp"
 #include "app/run/exports.hpp"
+#include "app/run/flat_performance.hpp"
 #include "app/run/interrupt.hpp"
 #include "app/run/source.hpp"
 #include "app/stimuli/stage.hpp"
@@ -65,6 +67,13 @@ std::vector<double> sheet_times(const SheetCommand& command, double length_s) {
     times.push_back(command.from_s + i * command.every_s);
   }
   return times;
+}
+
+template <class Rows>
+void name_rows(const SheetCommand& command, Rows& rows) {
+  US_CHECK(command.captions.empty() || command.captions.size() == rows.size(), "--captions has ",
+           command.captions.size(), ", the sheet ", rows.size(), " rows");
+  for (size_t i = 0; i < command.captions.size(); ++i) rows[i].caption = command.captions[i];
 }
 
 render::StripMoment moment_of(const SourceFrame& frame) {
@@ -180,16 +189,70 @@ SheetContent content_of_study(const SheetCommand& command) {
   return content;
 }
 
+/// A row that is flat in itself: 2D poses, or a folder of pictures.
+struct FlatRow {
+  std::string path;
+  double from_s = 0;
+  std::optional<KeypointReading> reading;  ///< none: pictures
+
+  double length_s() const {
+    return reading ? static_cast<double>(reading->frames.size() - 1) / reading->fps
+                   : static_cast<double>(count_pictures(path) - 1) / kPictureRate;
+  }
+  render::PictureRow at(std::vector<double> times, int width) const {
+    for (double& time : times) time += from_s;
+    return reading ? pose_row(*reading, times, width) : picture_row(path, times, width);
+  }
+};
+
+bool is_flat_row(const std::string& text) {
+  return is_folder_of_pictures(file_of(text).path) || looks_like_keypoints(file_of(text).path);
+}
+
+FlatRow flat_row(const std::string& text) {
+  const SheetFile file = file_of(text);
+  FlatRow row{file.path, file.from_s, {}};
+  if (is_folder_of_pictures(file.path)) return row;
+  FlatSourceOptions options;
+  options.path = file.path;
+  row.reading = open_keypoints(options);
+  return row;
+}
+
+int make_flat_sheet(const SheetCommand& command) {
+  std::vector<FlatRow> files;
+  double length_s = 0;
+  for (const std::string& text : command.paths) {
+    files.push_back(flat_row(text));
+    length_s = std::max(length_s, files.back().length_s() - files.back().from_s);
+  }
+  const std::vector<double> times = sheet_times(command, length_s);
+  render::StripOptions options;
+  options.title = command.title;
+  options.columns = command.columns;
+  const int width = render::picture_width(options, static_cast<int>(times.size()));
+  std::vector<render::PictureRow> rows;
+  rows.reserve(files.size());
+  for (const FlatRow& file : files) rows.push_back(file.at(times, width));
+  name_rows(command, rows);
+  std::vector<std::string> headers;
+  headers.reserve(times.size());
+  for (const double time : times) headers.push_back(printed("%.2f s", time));
+  render::write_png(command.out, render::picture_sheet(rows, headers, options));
+  std::printf("%s: %zu rows, %zu moments\n", command.out.c_str(), rows.size(), times.size());
+  return 0;
+}
+
 int make_sheet(const SheetCommand& command) {
   check_writable(command.out);
   for (const std::string& text : command.paths) check_not_read(command.out, {file_of(text).path});
   const bool study = file_suffix(command.paths[0]) == ".study";
   US_CHECK(!study || command.paths.size() == 1, command.paths[0], ": a study is shown by itself");
   US_CHECK(study || command.motion.empty(), "--motion is of a study");
+  if (!study && std::all_of(command.paths.begin(), command.paths.end(), is_flat_row))
+    return make_flat_sheet(command);
   SheetContent content = study ? content_of_study(command) : content_of_files(command);
-  US_CHECK(command.captions.empty() || command.captions.size() == content.rows.size(), "--captions has ",
-           command.captions.size(), ", the sheet ", content.rows.size(), " rows");
-  for (size_t i = 0; i < command.captions.size(); ++i) content.rows[i].caption = command.captions[i];
+  name_rows(command, content.rows);
   content.rows[0].color = render::SheetOptions().source_color;
   render::StripOptions options;
   options.title = command.title.empty() ? content.title : command.title;
@@ -204,10 +267,10 @@ int make_sheet(const SheetCommand& command) {
 
 Action declare_sheet(CLI::App& app) {
   const auto command = std::make_shared<SheetCommand>();
-  app.add_option(
-         "FILE", command->paths,
-         "a row each: animated characters, skeletal motions, scans; or one .study, with a row for its "
-         "source and each of its conditions")
+  app.add_option("FILE", command->paths,
+                 "a row each: animated characters, skeletal motions, scans; 2D poses, folders of PNGs (30 a "
+                 "second); or one .study, with a row for "
+                 "its source and each of its conditions")
       ->required();
   app.add_option("--out", command->out, "the picture, .png")->required();
   app.add_option("--every", command->every_s, "seconds from moment to moment (default: a sixth)")

@@ -39,6 +39,16 @@ StudioServices studio_services(const std::string& weights) {
     options.weights = weights;
     return nn::load_lifter(nn::weights_folder(options));
   };
+  services.lengths = [weights]() -> std::shared_ptr<const LengthReader> {
+    nn::NetworkOptions options;
+    options.weights = weights;
+    return nn::load_length_reader(nn::weights_folder(options));
+  };
+  services.flat_engine = [weights](const std::string& name, bool touches) {
+    nn::NetworkOptions options;
+    options.weights = weights;
+    return nn::load_keypoint_transfer(options, name, touches);
+  };
   services.weights = [weights] {
     nn::NetworkOptions options;
     options.weights = weights;

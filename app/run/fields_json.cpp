@@ -132,6 +132,13 @@ Json FieldsWriter::json_of(const SkeletonEdit& edit, const std::string& where) {
   return json;
 }
 
+Json FieldsWriter::json_of(const TrackEdit& edit, const std::string& where) {
+  Json json{{"kind", std::holds_alternative<PointDrag>(edit) ? "drag" : "exchange"}};
+  FieldsWriter writer(json, folder_, where + '.');
+  std::visit([&writer](const auto& kind) { fields(writer, kind); }, edit);
+  return json;
+}
+
 Json FieldsWriter::json_of(const RigEdit& edit, const std::string& where) {
   Json json{{"kind", kRigEditNames[edit.index()]}};
   FieldsWriter writer(json, folder_, where + '.');
@@ -186,6 +193,15 @@ void FieldsReader::read(const Json& json, SkeletonEdit& edit, const std::string&
   reader("kind", kind);
   US_CHECK(kind == "drag" || kind == "swap", where, ".kind must be drag or swap");
   if (kind == "swap") edit = SwapEdit{};
+  std::visit([&reader](auto& one) { fields(reader, one); }, edit);
+}
+
+void FieldsReader::read(const Json& json, TrackEdit& edit, const std::string& where) {
+  FieldsReader reader(json, folder_, where + '.');
+  std::string kind;
+  reader("kind", kind);
+  US_CHECK(kind == "drag" || kind == "exchange", where, ".kind must be drag or exchange");
+  if (kind == "exchange") edit = SidesExchange{};
   std::visit([&reader](auto& one) { fields(reader, one); }, edit);
 }
 

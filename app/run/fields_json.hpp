@@ -18,6 +18,7 @@
 #include "retarget/character/bone_map.hpp"
 #include "retarget/editing/skeleton_edits.hpp"
 #include "retarget/editing/target_edits.hpp"
+#include "retarget/keypoints/track_edits.hpp"
 #include "retarget/rig/rig_edits.hpp"
 
 namespace understudy::app {
@@ -102,6 +103,7 @@ class FieldsWriter {
   Json json_of(const WeightRows& value, const std::string& where);
   Json json_of(const SkeletonEdit& edit, const std::string& where);
   Json json_of(const RigEdit& edit, const std::string& where);
+  Json json_of(const TrackEdit& edit, const std::string& where);
   template <class T>
   Json json_of(const T& value, const std::string& where) {
     Json json = Json::object();
@@ -218,6 +220,7 @@ class FieldsReader {
   void read(const Json& json, std::shared_ptr<const WeightRows>& value, const std::string& where);
   void read(const Json& json, SkeletonEdit& edit, const std::string& where);
   void read(const Json& json, RigEdit& edit, const std::string& where);
+  void read(const Json& json, TrackEdit& edit, const std::string& where);
   template <class T>
   void read(const Json& json, T& value, const std::string& where) {
     FieldsReader reader(json, folder_, where + '.', unknown_);

@@ -31,6 +31,25 @@ void add_known(Metrics& metrics, const char* key, double value) {
 
 }  // namespace
 
+double length_drift(const std::vector<FlatPose>& poses, const LengthReader& lengths) {
+  std::array<Running, kFlatBoneCount> told;
+  for (const FlatPose& pose : poses) {
+    if ((seen_lengths(pose) > 0).count() < 3) continue;
+    const PoseLengths now = lengths.read(pose);
+    for (int b = 0; b < kFlatBoneCount; ++b)
+      told[static_cast<size_t>(b)].add(static_cast<double>(now.log_length[b]));
+  }
+  double drift = 0;
+  for (const Running& bone : told) drift += 100 * bone.deviation() / kFlatBoneCount;
+  return drift;
+}
+
+double mean_second_difference(const std::vector<FlatPose>& poses) {
+  Running all;
+  for (size_t t = 2; t < poses.size(); ++t) add_second_differences(poses[t], poses[t - 1], poses[t - 2], all);
+  return all.mean();
+}
+
 FlatFigures flat_figures(const FlatSourceOptions& options, const LengthReader& lengths) {
   const KeypointReading reading = open_keypoints(options);
   const std::vector<CleanPose> clean = clean_track(reading, reading.performer);
@@ -39,7 +58,7 @@ FlatFigures flat_figures(const FlatSourceOptions& options, const LengthReader& l
   figures.frames = static_cast<int64_t>(clean.size());
   TrackJitter jitter;
   Running seen, violation, as_it_is, cleaned;
-  std::array<Running, kFlatBoneCount> told;
+  std::vector<FlatPose> usable;
   std::array<const FlatPose*, 3> raw{};
   for (size_t t = 0; t < clean.size(); ++t) {
     figures.mended += clean[t].sides_mended ? 1 : 0;
@@ -57,18 +76,13 @@ FlatFigures flat_figures(const FlatSourceOptions& options, const LengthReader& l
       add_second_differences(pose, *raw[1], *raw[0], as_it_is);
       add_second_differences(clean[t].pose, clean[t - 1].pose, clean[t - 2].pose, cleaned);
     }
-    if ((seen_lengths(clean[t].pose) > 0).count() < 3) continue;
-    const PoseLengths now = lengths.read(clean[t].pose);
-    for (int b = 0; b < kFlatBoneCount; ++b)
-      told[static_cast<size_t>(b)].add(static_cast<double>(now.log_length[b]));
+    usable.push_back(clean[t].pose);
   }
-  double drift = 0;
-  for (const Running& bone : told) drift += 100 * bone.deviation() / kFlatBoneCount;
   add_known(figures.metrics, "seen", seen.mean());
   if (jitter.pixels() >= 0) add_known(figures.metrics, "jitter_px", static_cast<double>(jitter.pixels()));
   add_known(figures.metrics, "jitter_after", cleaned.mean() / as_it_is.mean());
   add_known(figures.metrics, "violation", violation.mean());
-  add_known(figures.metrics, "drift", drift);
+  add_known(figures.metrics, "drift", length_drift(usable, lengths));
   return figures;
 }
 

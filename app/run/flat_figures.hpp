@@ -21,6 +21,12 @@ struct FlatFigures {
 };
 
 /// Of who performs in it. Throws Error naming the file.
+/// Per cent by which the lengths change that are read off each of the poses; nobody's, and those of whom
+/// little is seen, do not count. NaN where none does.
+double length_drift(const std::vector<FlatPose>& poses, const LengthReader& lengths);
+/// Mean second difference of the points' places, pixels a frame squared; NaN where none is known.
+double mean_second_difference(const std::vector<FlatPose>& poses);
+
 FlatFigures flat_figures(const FlatSourceOptions& options, const LengthReader& lengths);
 
 }  // namespace understudy::app

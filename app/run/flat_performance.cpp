@@ -11,9 +11,11 @@
 #include "retarget/base/file.hpp"
 #include "retarget/base/text.hpp"
 #include "retarget/character/picture.hpp"
+#include "retarget/keypoints/keypoint_follower.hpp"
 #include "retarget/keypoints/keypoint_writers.hpp"
 #include "retarget/pose2d/limb_transfer.hpp"
 #include "retarget/pose2d/proportion_estimate.hpp"
+#include "retarget/pose2d/reference_remarks.hpp"
 
 namespace understudy::app {
 namespace {
@@ -22,7 +24,6 @@ namespace fs = std::filesystem;
 constexpr const char* kFormat = "understudy_proportions";
 constexpr int kFormatVersion = 1;
 constexpr uint64_t kLargestProportions = 1 << 20;
-constexpr float kUncertain = 0.12f;  // of a length's logarithm
 
 std::optional<Canvas> canvas_of_picture(const std::string& path) {
   try {
@@ -41,23 +42,25 @@ const FlatPose& clearest_pose(const KeypointTrack& track) {
   return best->pose;
 }
 
-/// "from 12 poses", and which bones nobody can be sure of.
-std::string about(const Proportions& lengths) {
-  std::string doubtful;
-  for (int b = 0; b < kFlatBoneCount; ++b)
-    if (lengths.doubt[b] > kUncertain)
-      append_item(doubtful, lower_case(kFlatBones[static_cast<size_t>(b)].label));
-  const std::string poses = lengths.poses == 1 ? "one pose" : grouped(lengths.poses) + " poses";
-  return "from " + poses + (doubtful.empty() ? "" : "; uncertain: " + doubtful);
-}
-
 /// Before the frame they were not known.
 Proportions known_by_now(const ProportionEstimate& estimate) {
   return estimate.poses() > 0 ? estimate.lengths() : Proportions{};
 }
 
+bool tells_lengths(const FlatPose& pose) {
+  return (seen_lengths(pose) > 0).count() >= 3;
+}
+
 void look_at(const FlatPose& pose, const LengthReader& lengths, ProportionEstimate& estimate) {
-  if ((seen_lengths(pose) > 0).count() >= 3) estimate.push(pose, lengths.read(pose));
+  if (tells_lengths(pose)) estimate.push(pose, lengths.read(pose));
+}
+
+std::unique_ptr<KeypointTransfer> made_engine(const FlatOptions& options, const FlatTools& tools) {
+  flat_engine_named(options.engine);  // throws where there is none
+  if (tools.engine) return tools.engine(options.engine, options.touches);
+  auto limbs = std::make_unique<LimbTransfer>(options.touches);
+  US_CHECK(options.engine == limbs->name(), "the engine '", options.engine, "' needs weights");
+  return limbs;
 }
 
 KeypointReading empty_result(const KeypointReading& source, const FlatTarget& target, FlatPlace place) {
@@ -76,19 +79,31 @@ KeypointReading empty_result(const KeypointReading& source, const FlatTarget& ta
 
 }  // namespace
 
-KeypointReading open_keypoints(const FlatSourceOptions& options) {
+namespace {
+
+KeypointReaderOptions reader_options(const FlatSourceOptions& options, std::string* picture) {
   KeypointReaderOptions reading;
   reading.canvas = options.canvas;
   reading.fps = options.fps;
   reading.layout = options.layout;
-  reading.picture_size = canvas_of_picture;
+  reading.picture_size = [picture](const std::string& path) {
+    const std::optional<Canvas> canvas = canvas_of_picture(path);
+    if (canvas && picture != nullptr) *picture = path;
+    return canvas;
+  };
   if (!options.person.empty()) {
     int64_t person = 0;
     US_CHECK(parse_integer(options.person, person), "a person of 2D poses is a number, not '", options.person,
              "'");
     reading.person = person;
   }
-  return read_keypoints(options.path, reading);
+  return reading;
+}
+
+}  // namespace
+
+KeypointReading open_keypoints(const FlatSourceOptions& options, std::string* picture) {
+  return read_keypoints(options.path, reader_options(options, picture));
 }
 
 Proportions proportions_of(const KeypointReading& reading, const LengthReader& lengths) {
@@ -100,6 +115,28 @@ Proportions proportions_of(const KeypointReading& reading, const LengthReader& l
   }
   US_CHECK(estimate.poses() > 0, reading.path, ": nobody is seen well enough to tell their proportions");
   return estimate.lengths();
+}
+
+std::string evidence_of(const Proportions& lengths) {
+  std::string doubtful;
+  for (int b = 0; b < kFlatBoneCount; ++b)
+    if (lengths.doubt[b] > kUncertainLength)
+      append_item(doubtful, lower_case(kFlatBones[static_cast<size_t>(b)].label));
+  const std::string poses = lengths.poses == 1 ? "one pose" : grouped(lengths.poses) + " poses";
+  return "from " + poses + (doubtful.empty() ? "" : "; uncertain: " + doubtful);
+}
+
+FlatTarget flat_target(const KeypointReading& reading, const LengthReader& lengths) {
+  FlatTarget target;
+  target.lengths = proportions_of(reading, lengths);
+  FlatPose standing = clearest_pose(reading.performing());
+  add_middles(standing);
+  target.canvas = reading.canvas;
+  target.remarks = reference_remarks(standing, target.lengths);
+  // Where the feet are the highest, nobody shall stand on them.
+  if (is_upside_down(standing)) forget_feet(standing);
+  target.standing = standing;
+  return target;
 }
 
 bool is_proportions_file(const std::string& path) {
@@ -158,44 +195,102 @@ FlatTarget open_flat_target(const FlatSourceOptions& options, const LengthReader
   }
   const KeypointReading reading = open_keypoints(options);
   told.insert(told.end(), reading.told.begin(), reading.told.end());
-  target.lengths = proportions_of(reading, lengths);
-  FlatPose standing = clearest_pose(reading.performing());
-  add_middles(standing);
-  target.standing = standing;
-  target.canvas = reading.canvas;
-  told.push_back("the target's proportions are " + about(target.lengths));
+  target = flat_target(reading, lengths);
+  for (const std::string& remark : target.remarks) told.push_back(options.path + ": who performs " + remark);
+  told.push_back("the target's proportions are " + evidence_of(target.lengths));
   return target;
 }
 
-FlatPerformance perform_flat(const FlatOptions& options, const LengthReader& lengths) {
+FlatPerformer::FlatPerformer(const FlatTarget& target, const FlatOptions& options, const FlatTools& tools)
+    : retargeter_(made_engine(options, tools), target, options.place),
+      lengths_(tools.lengths),
+      keeps_size_(!options.growth) {}
+
+FlatPose FlatPerformer::push(const CleanPose& clean, double dt) {
+  if (!ahead_ && clean.is_usable) look_at(clean.pose, *lengths_, estimate_);
+  if (!ahead_ && estimate_.poses() == 0) return {};
+  const Proportions source = source_lengths();
+  if (keeps_size_ && clean.is_usable && tells_lengths(clean.pose))
+    growth_.push(lengths_->read(clean.pose), source, dt);
+  return retargeter_.push(clean, source, growth_.growth());
+}
+
+Proportions FlatPerformer::source_lengths() const {
+  return ahead_ ? *ahead_ : known_by_now(estimate_);
+}
+
+FlatTrack perform_track(const KeypointReading& source, const std::vector<CleanPose>& clean,
+                        const std::optional<Proportions>& source_lengths, const FlatTarget& target,
+                        const FlatOptions& options, const FlatTools& tools) {
+  FlatTrack made;
+  made.result = empty_result(source, target, options.place);
+  FlatPerformer performer(target, options, tools);
+  if (source_lengths) performer.set_source_lengths(*source_lengths);
+  for (size_t frame = 0; frame < clean.size(); ++frame) {
+    check_interrupt("before frame " + std::to_string(frame));
+    const auto t = static_cast<int64_t>(frame);
+    const double dt = frame > 0 ? source.seconds(t) - source.seconds(t - 1) : 1 / source.fps;
+    FlatPose pose = performer.push(clean[frame], dt);
+    made.result.frames[frame].problem = clean[frame].problem;
+    made.flagged += clean[frame].is_usable ? 0 : 1;
+    if (!is_nobody(pose)) made.result.tracks[0].poses.push_back({t, 1, std::move(pose)});
+  }
+  made.source_lengths = performer.source_lengths();
+  return made;
+}
+
+FlatPerformance perform_flat(const FlatOptions& options, const FlatTools& tools) {
   FlatPerformance made;
   made.source = open_keypoints(options.source);
   made.told = made.source.told;
-  const FlatTarget target = open_flat_target(options.target, lengths, made.told);
+  const FlatTarget target = open_flat_target(options.target, *tools.lengths, made.told);
   made.target_lengths = target.lengths;
+  std::optional<Proportions> ahead;
   if (options.ahead) {
-    made.source_lengths = proportions_of(made.source, lengths);
-    made.told.push_back("the source's proportions are " + about(made.source_lengths) +
+    ahead = proportions_of(made.source, *tools.lengths);
+    made.told.push_back("the source's proportions are " + evidence_of(*ahead) +
                         ", read off the whole file before its first frame");
   }
   KeypointFilterOptions filter;
   filter.smoothing = options.smoothing;
   const std::vector<CleanPose> clean = clean_track(made.source, made.source.performer, filter);
-  FlatRetargeter retargeter(std::make_unique<LimbTransfer>(options.touches), target, options.place);
-  made.result = empty_result(made.source, target, options.place);
-  ProportionEstimate estimate;
-  for (size_t frame = 0; frame < clean.size(); ++frame) {
-    check_interrupt("before frame " + std::to_string(frame));
-    if (!options.ahead && clean[frame].is_usable) look_at(clean[frame].pose, lengths, estimate);
-    const Proportions source = options.ahead ? made.source_lengths : known_by_now(estimate);
-    TrackedPose out;
-    out.frame = static_cast<int64_t>(frame);
-    if (options.ahead || estimate.poses() > 0) out.pose = retargeter.push(clean[frame], source);
-    made.result.frames[frame].problem = clean[frame].problem;
-    made.flagged += clean[frame].is_usable ? 0 : 1;
-    if (!is_nobody(out.pose)) made.result.tracks[0].poses.push_back(std::move(out));
+  FlatTrack track = perform_track(made.source, clean, ahead, target, options, tools);
+  made.result = std::move(track.result);
+  made.source_lengths = track.source_lengths;
+  made.flagged = track.flagged;
+  return made;
+}
+
+FlatPerformance follow_flat(const FlatOptions& options, const FlatTools& tools,
+                            const std::function<void(const KeypointFrame&)>& done) {
+  FlatPerformance made;
+  const FlatTarget target = open_flat_target(options.target, *tools.lengths, made.told);
+  made.target_lengths = target.lengths;
+  KeypointFollowOptions follow;
+  follow.cancelled = interrupted;
+  KeypointFollower follower(options.source.path, reader_options(options.source, nullptr), follow);
+  KeypointFilterOptions filtering;
+  filtering.smoothing = options.smoothing;
+  KeypointFilter filter(filtering);
+  FlatPerformer performer(target, options, tools);
+  std::vector<KeypointFrame> frames;
+  KeypointTrack track;
+  track.person = 1;
+  while (const auto frame = follower.next()) {
+    const CleanPose clean = filter.push(frame->pose ? &*frame->pose : nullptr, frame->dt, frame->problem);
+    FlatPose pose = performer.push(clean, frame->dt);
+    if (!is_nobody(pose)) track.poses.push_back({static_cast<int64_t>(frames.size()), 1, std::move(pose)});
+    frames.push_back({frame->number, clean.problem});
+    made.flagged += clean.is_usable ? 0 : 1;
+    done(frames.back());
   }
-  if (!options.ahead) made.source_lengths = known_by_now(estimate);
+  check_interrupt("after " + std::to_string(frames.size()) + " frames");
+  made.source = follower.finish();
+  made.told.insert(made.told.end(), made.source.told.begin(), made.source.told.end());
+  made.source_lengths = performer.source_lengths();
+  made.result = empty_result(made.source, target, options.place);
+  made.result.frames = std::move(frames);
+  made.result.tracks[0] = std::move(track);
   return made;
 }
 

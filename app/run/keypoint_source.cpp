@@ -25,12 +25,21 @@ FlatSourceOptions flat_options(const SourceOptions& options) {
   return flat;
 }
 
+/// With points dragged, of a reading in which sides are exchanged, as the options have it.
+std::vector<CleanPose> clean_poses(const KeypointReading& reading, const SourceOptions& options) {
+  KeypointFilterOptions filter;
+  filter.smoothing = options.smoothing;
+  std::vector<CleanPose> poses = clean_track(reading, reading.performer, filter);
+  drag_points(options.point_edits, poses);
+  return poses;
+}
+
 class KeypointSource final : public AnimatedSource {
  public:
   KeypointSource(const KeypointReading& reading, const SourceOptions& options)
       : AnimatedSource(reading.fps, ssize(reading.frames)),
         name_(options.path),
-        poses_(clean_track(reading, reading.performer)) {
+        poses_(clean_poses(reading, options)) {
     view_.canvas = reading.canvas;
     view_.stature_m = static_cast<float>(options.stature);
     view_.fov_deg = static_cast<float>(options.fov);
@@ -124,7 +133,9 @@ void check_no_picture(const SourceOptions& options) {
 }
 
 std::unique_ptr<Source> open_keypoint_source(const SourceOptions& options) {
-  return std::make_unique<KeypointSource>(open_keypoints(flat_options(options)), options);
+  KeypointReading reading = open_keypoints(flat_options(options));
+  exchange_sides(options.point_edits, reading.tracks[static_cast<size_t>(reading.performer)]);
+  return std::make_unique<KeypointSource>(reading, options);
 }
 
 }  // namespace understudy::app

@@ -16,6 +16,7 @@
 #include "retarget/editing/scan_edits.hpp"
 #include "retarget/formats/import.hpp"
 #include "retarget/formats/scan_source.hpp"
+#include "retarget/keypoints/track_edits.hpp"
 #include "retarget/pipeline/interfaces.hpp"
 #include "retarget/pipeline/lifter.hpp"
 #include "retarget/pipeline/motion_space.hpp"
@@ -52,9 +53,12 @@ struct SourceOptions {
   std::string canvas{};  ///< "1280x720"; empty: as the file or a picture beside it tells
   double stature = static_cast<double>(kUsualStature_m);  ///< of the person, metres
   double fov = static_cast<double>(kUsualFov_deg);        ///< vertical, of the camera, degrees
+  float smoothing = 1;                                    ///< of their points, see KeypointFilterOptions
+  std::vector<TrackEdit> point_edits{};                   ///< by hand
   ScanEdits
       edits{};  ///< of each frame, before anybody is looked for; documents have theirs beside the source
 };
+constexpr Within<float> kFlatSmoothing{0, 4};
 /// What documents keep of it: `follow`, `quiet`, `truth`, `made` and `edits` belong to one run.
 template <class V, class S>
 FieldsOf<S, SourceOptions> fields(V& visit, S& source) {
@@ -76,6 +80,8 @@ FieldsOf<S, SourceOptions> fields(V& visit, S& source) {
   visit("canvas", source.canvas);
   visit("stature", source.stature, Within<double>{0.3, 3});
   visit("fov", source.fov, Within<double>{1, 170});
+  visit("smoothing", source.smoothing, kFlatSmoothing);
+  visit("point_edits", source.point_edits);
 }
 /// A source that is made by this recipe.
 SourceOptions blended_source(BlendRecipe blend);

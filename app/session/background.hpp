@@ -75,9 +75,21 @@ struct Studio::Background {
   std::string autosave_problem;          // the last one reported
   /// What the second body was last made to perform, or is made to; null: nothing yet.
   std::shared_ptr<SecondBodyJob> second_work;
+  std::string flat_key;                // of what is shown of 2D poses, or on its way
+  std::shared_ptr<FlatJob> flat_work;  // the last one; null: none yet
+  std::string flat_shown;              // the source's part of that key, as it is shown
   double since_autosave = 0;
   std::shared_ptr<Autosaving> autosaving = std::make_shared<Autosaving>();
 };
+
+template <>
+void Studio::take_in(SourceOpened& event);
+template <>
+void Studio::take_in(SourceFailed& event);
+template <>
+void Studio::take_in(SourceFrames& event);
+template <>
+void Studio::take_in(TakeFailed& event);
 
 /// Leaves what is the person's of a frame's scan. False: that is nothing.
 bool cut_out(const KeptSource& kept, Mesh& scan);

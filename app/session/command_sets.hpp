@@ -19,6 +19,7 @@ void add_study_commands(Commands& commands);
 void add_map_commands(Commands& commands);
 void add_bones_commands(Commands& commands);
 void add_second_body_commands(Commands& commands);
+void add_flat_commands(Commands& commands);
 void add_program_commands(Commands& commands);
 void add_all_commands(Commands& commands);
 
@@ -98,6 +99,16 @@ void save_study(Studio& studio, const std::string& path);
 
 /// Another source in place of the open one: edits and settings of the old one's frames go with it.
 void set_source(Call& c, SourceOptions source);
+
+/// Opens 2D poses as the source.
+void set_flat_source(Call& c, const std::string& path);
+/// One setting of how a person in a picture performs: "place", "touches", "growth", "engine". Throws Error for another.
+void set_flat(FlatTake& take, const std::string& setting, const ArgumentReader& value);
+/// Exchanges left and right of 2D poses: FIRST LAST [arms|legs|both].
+void exchange_flat_sides(Call& c);
+/// Whether a file can be the person in a picture who performs 2D poses: such poses, proportions, or a
+/// picture with poses beside. Then the path of these.
+std::optional<std::string> flat_target_file(const std::string& path);
 
 /// What was found in the source's scans. Throws Error where there is nothing yet.
 const DiscoveredRig& rig_of(const Call& c);

@@ -4,12 +4,14 @@
 
 #include <algorithm>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "app/run/method.hpp"
 #include "app/run/source.hpp"
 #include "app/run/target_file.hpp"
+#include "app/session/flat_document.hpp"
 #include "retarget/base/fields.hpp"
 #include "retarget/discovery/bone_matching.hpp"
 #include "retarget/editing/pose_edits.hpp"
@@ -42,6 +44,7 @@ struct Take {
   Method method;
   TargetEdits target_edits;
   PoseEdits pose_edits;
+  std::optional<FlatTake> flat{};  ///< its target is a person in a picture; none: a character
 };
 template <class V, class S>
 FieldsOf<S, Take> fields(V& visit, S& take) {
@@ -51,6 +54,7 @@ FieldsOf<S, Take> fields(V& visit, S& take) {
   visit("method", take.method);
   visit("target_edits", take.target_edits);
   visit("pose_edits", take.pose_edits);
+  visit("flat", take.flat);
 }
 
 constexpr int kMostBones = 300;  ///< that may be asked for
@@ -86,6 +90,7 @@ struct Document {
   std::string truth;     ///< truth.npz of a case; empty: none
   ScanEdits scan_edits;
   std::vector<SkeletonEdit> skeleton_edits;
+  std::optional<FlatSource> flat{};  ///< the source is 2D poses; none: it is not
   OwnBones bones;
   std::vector<Take> takes;
 };
@@ -95,6 +100,7 @@ FieldsOf<S, Document> fields(V& visit, S& document) {
   visit("truth", document.truth, FilePath{});
   visit("scan_edits", document.scan_edits);
   visit("skeleton_edits", document.skeleton_edits);
+  visit("flat", document.flat);
   visit("bones", document.bones);
   visit("takes", document.takes);
 }
@@ -121,11 +127,17 @@ inline const std::string& person_of(const Document& document, const Take& take) 
 inline bool performs_another(const Document& document, const Take& take) {
   return person_of(document, take) != document.source.person;
 }
-/// The first take of the source's own person, by which the source's skeletons are repaired and smoothed; as
-/// many as there are takes: none.
+/// Whether any take is by a character: a source of 2D poses is lifted for it.
+inline bool performs_in_space(const Document& document) {
+  return std::any_of(document.takes.begin(), document.takes.end(),
+                     [](const Take& take) { return !take.flat; });
+}
+/// The first take of the source's own person by a character, by which the source's skeletons are repaired and
+/// smoothed; as many as there are takes: none.
 inline size_t take_of_source(const Document& document) {
-  const auto found = std::find_if(document.takes.begin(), document.takes.end(),
-                                  [&](const Take& take) { return !performs_another(document, take); });
+  const auto found = std::find_if(document.takes.begin(), document.takes.end(), [&](const Take& take) {
+    return !take.flat && !performs_another(document, take);
+  });
   return static_cast<size_t>(found - document.takes.begin());
 }
 

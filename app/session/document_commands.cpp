@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "app/run/case_folder.hpp"
+#include "app/run/flat_performance.hpp"
 #include "app/session/background.hpp"
 #include "app/session/command_sets.hpp"
 #include "retarget/base/error.hpp"
@@ -12,6 +13,7 @@
 #include "retarget/base/text.hpp"
 #include "retarget/formats/file_formats.hpp"
 #include "retarget/formats/npz.hpp"
+#include "retarget/keypoints/keypoint_reader.hpp"
 #include "retarget/motion/read_motion.hpp"
 
 namespace understudy::app {
@@ -112,7 +114,7 @@ void add_files(Commands& commands) {
     const std::string& path = c.word(0, "path");
     save_document(c.studio, can_be(path, kDocument) ? path : path + ".understudy");
   });
-  commands.add({"open", "Open", "PATH ...: a scan, target, document, study or case"}, open_all);
+  commands.add({"open", "Open", "PATH ...: a scan, target, 2D poses, document, study or case"}, open_all);
 }
 
 void recover(Call& c) {
@@ -155,7 +157,7 @@ void add_recovery(Commands& commands) {
 constexpr uint64_t kGlance = 1 << 20;  // bytes of a glTF that may be read before the UI thread draws on
 
 /// Gltf: a motion or a mesh; which of them, only more than a glance shows.
-enum class Kind { Document, Study, Case, Scans, Body, Motion, Mesh, Gltf };
+enum class Kind { Document, Study, Case, Scans, Body, Motion, Mesh, Gltf, Flat };
 
 Kind kind_of_npz(const std::string& path) {
   const std::vector<std::string> names = npz_names(path);
@@ -174,14 +176,17 @@ Kind kind_of(const Document& document, const std::string& path) {
   std::error_code failed;
   US_CHECK(fs::exists(path, failed), path, ": there is no such file or folder");
   if (fs::is_directory(path, failed))
-    return fs::exists(fs::path(path) / "case.json") ? Kind::Case : Kind::Scans;
+    return fs::exists(fs::path(path) / "case.json") ? Kind::Case
+           : looks_like_keypoints(path)             ? Kind::Flat
+                                                    : Kind::Scans;
   if (can_be(path, kDocument)) return Kind::Document;
+  if (flat_target_file(path)) return Kind::Flat;
   if (can_be(path, kStudy)) return Kind::Study;
   if (fs::path(path).filename() == "case.json") return Kind::Case;
   if (can_be(path, kBody)) return kind_of_npz(path);
   if (format_of_file(path, kTarget) == nullptr) {
     US_CHECK(can_be(path, kMotion | kScanSequence), path,
-             ": is neither a scan, a target, a motion, a document nor a study");
+             ": is neither a scan, a target, a motion, 2D poses, a document nor a study");
     return Kind::Scans;
   }
   if (!wants_motion(document)) return Kind::Mesh;
@@ -275,6 +280,11 @@ void Studio::open(const std::string& path) {
       return run("target.add", {whole});
     case Kind::Gltf:
       return open_large_gltf(*this, whole);
+    case Kind::Flat:
+      return run(session_.document.flat || flat_target_file(whole) != whole || is_proportions_file(whole)
+                     ? "target.add"
+                     : "source.open",
+                 {whole});
   }
 }
 

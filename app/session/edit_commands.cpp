@@ -131,6 +131,7 @@ void add_skeleton_edits(Commands& commands) {
                       c.document.skeleton_edits.push_back(edit);
                     });
   commands.add_edit({"edit.swap", "Swap left and right", "FIRST LAST arms|legs|both"}, [](Call& c) {
+    if (c.document.flat) return exchange_flat_sides(c);
     SwapEdit edit = frame_range<SwapEdit>(c, 0);
     edit.limbs = c.choice<SwapEdit::Limbs>(2, "limbs", kLimbNames);
     c.document.skeleton_edits.push_back(edit);
@@ -369,9 +370,25 @@ void move_go_on(Call& c) {
   edit->seconds = std::clamp(static_cast<float>(seconds), kGoOnSeconds.low, kGoOnSeconds.high);
 }
 
+/// Of 2D poses.
+void move_point_edit(Call& c) {
+  auto& edits = c.document.source.point_edits;
+  const int index = c.number<int>(1, "edit");
+  US_CHECK(index >= 0 && index < ssize(edits), "there is no edit ", index, " among ", edits.size());
+  TrackEdit& edit = edits[static_cast<size_t>(index)];
+  if (auto* const drag = std::get_if<PointDrag>(&edit)) {
+    drag->frame = frame_argument(c, 2);
+    return;
+  }
+  SidesExchange& exchange = std::get<SidesExchange>(edit);
+  const Trim to = frames_to(c, 2, exchange.last - exchange.first);
+  exchange.first = to.first, exchange.last = to.last;
+}
+
 void move_edit(Call& c) {
-  const size_t kind =
-      c.choice(0, "kind", {"drags", "swap", "rotations", "skips", "people", "fill", "go_on", "tempo"});
+  const size_t kind = c.choice(
+      0, "kind", {"drags", "swap", "rotations", "skips", "people", "fill", "go_on", "tempo", "points"});
+  if (kind == 8) return move_point_edit(c);
   if (kind == 7) return move_tempo_mark(c);
   if (kind == 5) return move_fill(c);
   if (kind == 6) return move_go_on(c);
@@ -394,7 +411,8 @@ void add_rearrangement(Commands& commands) {
   commands.add_edit(
       {"edit.move", "Move an edit in time",
        "drags FRAME TO | swap INDEX TO [LAST] | rotations TAKE FRAME TO | skips TAKE FIRST LAST TO [LAST] | "
-       "people INDEX TO [LAST] | fill TAKE INDEX TO [LAST] | go_on TAKE TO [LAST] | tempo TAKE INDEX TO"},
+       "people INDEX TO [LAST] | fill TAKE INDEX TO [LAST] | go_on TAKE TO [LAST] | tempo TAKE INDEX TO | "
+       "points INDEX TO [LAST]"},
       move_edit);
 }
 

@@ -80,17 +80,21 @@ struct TakeWork {
 
 Plan plan_of(const Document& document, const std::vector<int64_t>& take_ids) {
   Plan plan;
-  plan.source = document.source;
+  if (!document.flat || performs_in_space(document)) plan.source = document.source;
   plan.scan_edits = in_effect(document.scan_edits);
   plan.skeleton_edits = document.skeleton_edits;
   for (size_t k = 0; k < document.takes.size(); ++k) {
     const Take& take = document.takes[k];
+    if (take.flat) continue;
     plan.takes.push_back({take_ids[k], person_of(document, take), take.target, take.method,
                           take.target_edits.joints, take.target_edits.rest_pose});
   }
   const size_t by = take_of_source(document);
-  if (by < plan.takes.size()) plan.shown_by = take_ids[by];
-  if (!plan.takes.empty()) plan.shown = plan.takes[by < plan.takes.size() ? by : 0].method;
+  if (by < document.takes.size()) plan.shown_by = take_ids[by];
+  if (by < document.takes.size())
+    plan.shown = document.takes[by].method;
+  else if (!plan.takes.empty())
+    plan.shown = plan.takes.front().method;
   return plan;
 }
 

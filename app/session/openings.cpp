@@ -21,6 +21,7 @@ void restore_source(Document& document, const Document& before) {
   document.truth = before.truth;
   document.scan_edits = before.scan_edits;
   document.skeleton_edits = before.skeleton_edits;
+  document.flat = before.flat;
   document.bones = before.bones;
   for (Take& take : document.takes)
     for (const Take& old : before.takes)

@@ -36,7 +36,7 @@ Joints seen_joints(const Session& session, int frame) {
 /// user has put right is right, and what they make of one that was is their choice.
 std::string badness(const KeptSource& frame, const Joints& seen,
                     const Eigen::Array<float, kJointCount, 1>& usual) {
-  if (frame.flagged) return frame.reason;
+  if (frame.flagged || !frame.reason.empty()) return frame.reason;
   if (frame.confidence < kLowConfidence) return "Low confidence";
   for (int j = 1; j < kJointCount; ++j)
     if (frame.visibility[j] >= kSeen && frame.confidence_of[j] < kWeakLimb)
@@ -139,8 +139,22 @@ const SharedFrames<KeptSource>& performed_by(const Session& session, size_t take
   return is_another ? session.takes[take].another : session.source.frames;
 }
 
+bool is_flat_take(const Session& session, int take) {
+  const Take* const found = at_or_null(session.document.takes, take);
+  return found != nullptr && found->flat && take < ssize(session.takes);
+}
+
+bool is_canvas(const Session& session, int pane) {
+  return pane == 0 ? session.document.flat && !(session.view.lifted && performs_in_space(session.document))
+                   : is_flat_take(session, pane - 1);
+}
+
 int frame_count(const Session& session) {
   const size_t selected = session.selected_take;
+  if (is_flat_take(session, session.selected_take)) {
+    const auto& flat = session.takes[selected].flat;
+    return flat ? static_cast<int>(flat->poses.size()) : 0;
+  }
   if (selected < session.takes.size()) return session.takes[selected].shown.poses.size();
   return session.source.frames.size();
 }
@@ -239,8 +253,9 @@ std::vector<BadFrame> bad_frames(const Session& session) {
   std::vector<BadFrame> bad;
   const auto usual = usual_lengths(session.source.frames);
   for (size_t i = 0; i < session.source.frames.size(); ++i) {
-    const std::string why =
-        badness(session.source.frames[i], seen_joints(session, static_cast<int>(i)), usual);
+    std::string why = badness(session.source.frames[i], seen_joints(session, static_cast<int>(i)), usual);
+    if (why.empty() && session.flat.poses && i < session.flat.poses->clean.size())
+      why = session.flat.poses->clean[i].problem;
     if (!why.empty()) bad.push_back({static_cast<int>(i), why});
   }
   return bad;

@@ -15,6 +15,7 @@
 #include "app/session/bones_state.hpp"
 #include "app/session/document.hpp"
 #include "app/session/document_file.hpp"
+#include "app/session/flat_state.hpp"
 #include "app/session/history.hpp"
 #include "app/session/kept_owners.hpp"
 #include "app/session/map_state.hpp"
@@ -104,8 +105,9 @@ struct TakeState {
   std::vector<Series> series;  ///< as many values as frames shown
   Metrics metrics;             ///< of the whole, once all frames are there
   Latency latency;
-  EditCost cost;           ///< of the edits of the result
-  int64_t generation = 0;  ///< changes whenever earlier frames are no longer valid
+  EditCost cost;                           ///< of the edits of the result
+  std::shared_ptr<const FlatResult> flat;  ///< of a flat take all that was made; else null, or not yet
+  int64_t generation = 0;                  ///< changes whenever earlier frames are no longer valid
 };
 
 /// A background job, for the progress bar.
@@ -188,6 +190,7 @@ struct Session {
   Settings settings;
 
   SourceState source;
+  FlatState flat;
   std::vector<TakeState> takes;        ///< beside document.takes
   std::shared_ptr<const Truth> truth;  ///< null: none
   bool working = false;                ///< frames are still being made
@@ -239,6 +242,10 @@ void choose_pane(Session& session, int pane);
 void settle_current_take(Session& session);
 /// Who is performed by a take, as far as they were seen.
 const SharedFrames<KeptSource>& performed_by(const Session& session, size_t take);
+/// Whether a take is of 2D poses; one that is not there is not.
+bool is_flat_take(const Session& session, int take);
+/// Whether a view (0 the source, k the take k - 1) is a canvas with 2D poses, not a space.
+bool is_canvas(const Session& session, int pane);
 /// The number of frames that can be shown: of the selected take, or of the source where there is no take.
 int frame_count(const Session& session);
 /// What the status bar says: the newest message for ten seconds, then the newest failure until it is mended.

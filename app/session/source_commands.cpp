@@ -7,6 +7,7 @@
 #include "retarget/body/body.hpp"
 #include "retarget/formats/file_formats.hpp"
 #include "retarget/formats/scan_source.hpp"
+#include "retarget/keypoints/keypoint_reader.hpp"
 #include "retarget/motion/read_motion.hpp"
 #include "retarget/pipeline/method_table.hpp"
 
@@ -19,6 +20,7 @@ void set_source(Call& c, SourceOptions source) {
   document.truth.clear();
   document.scan_edits = {};
   document.skeleton_edits.clear();
+  document.flat.reset();
   document.bones = {};
   for (Take& take : document.takes) take.pose_edits = {}, take.person.clear();
   c.session.playback = Playback{};
@@ -34,10 +36,11 @@ void check_file(const std::string& path) {
 void add_opening(Commands& commands) {
   commands.add_edit(
       {"source.open", "Open source",
-       "PATH: scans (folder, list, array) or a skeletal motion (" + format_names(kMotion) + ")"},
+       "PATH: scans (folder, list, array), 2D poses, or a skeletal motion (" + format_names(kMotion) + ")"},
       [](Call& c) {
         SourceOptions source;
         source.path = c.path(0);
+        if (looks_like_keypoints(source.path)) return set_flat_source(c, source.path);
         opened({&c.session.settings.recent_sources}, source.path, [&] {
           US_CHECK(!is_smpl_body(source.path), source.path,
                    ": is a body; choose the motion that it performs as well");
@@ -124,6 +127,14 @@ void add_completing(Commands& commands) {
                     });
 }
 
+/// Of 2D poses, where they are read.
+void check_performer(const Call& c, const std::string& person) {
+  const auto& poses = c.session.flat.poses;
+  if (!c.document.flat || !poses || person_number(person) <= 0) return;
+  US_CHECK(poses->reading.track_of(person_number(person)) >= 0, name_of(c.document.source),
+           ": nobody in it is number ", person);
+}
+
 void add_import(Commands& commands) {
   commands.add_edit({"source.units", "Units of the scan", "auto|m|dm|cm|mm|in"},
                     [](Call& c) { c.document.source.import.units = c.one_of(0, "unit", kUnitNames); });
@@ -150,6 +161,7 @@ void add_import(Commands& commands) {
         US_CHECK(source.person != "all", "the source is one person; take.person gives a take another");
         if (person_number(source.person) > 0) c.label = "Choose person " + source.person;
         if (source.person == "best") source.person.clear();
+        check_performer(c, source.person);
         set_options(c, std::move(source));
       });
   commands.add_edit({"source.extractor", "Skeleton extraction", names_of(extractors(), "|")}, [](Call& c) {

@@ -6,6 +6,7 @@
 #include <limits>
 #include <thread>
 
+#include "app/run/keypoint_source.hpp"
 #include "app/session/background.hpp"
 #include "app/session/command_sets.hpp"
 #include "app/session/taught_styles.hpp"
@@ -42,7 +43,12 @@ std::vector<int> matched_takes(const std::vector<Take>& before, const std::vecto
 Studio::Studio(StudioServices services)
     : services_(std::move(services)),
       blender_(std::make_shared<MotionBlender>(services_.motion_coder)),
-      cache_(512, [blender = blender_](const SourceOptions& of) { return open_source(of, blender.get()); }),
+      cache_(512,
+             [blender = blender_, lifter = services_.lifter](const SourceOptions& of) {
+               auto source = open_source(of, blender.get());
+               if (is_keypoint_source(of)) source->set_tools({{}, {}, lifter, {}});
+               return source;
+             }),
       background_(std::make_unique<Background>(services_, blender_)) {
   if (!services_.settings_file.empty()) session_.settings = read_settings(services_.settings_file);
   std::error_code ignored;

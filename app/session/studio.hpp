@@ -5,16 +5,19 @@
 #include <memory>
 #include <string>
 
+#include "app/run/flat_performance.hpp"
 #include "app/session/commands.hpp"
 #include "app/session/frame_cache.hpp"
 #include "app/session/job_queue.hpp"
 #include "app/session/session.hpp"
+#include "retarget/pipeline/keypoint_transfer.hpp"
 
 namespace understudy::app {
 
 struct SourceFrames;
 struct BonesJob;
 struct SecondBodyJob;
+struct FlatJob;
 
 /// Where the networks come from: the program passes the trained ones, tests their own.
 struct StudioServices {
@@ -23,12 +26,15 @@ struct StudioServices {
   /// what codes movements that are blended; called off the UI thread, once
   std::function<std::shared_ptr<MotionCoder>()> motion_coder;
   std::function<std::unique_ptr<Lifter>()> lifter;  ///< what lifts 2D poses; called off the UI thread
-  std::function<std::string()> weights;             ///< checksums, for documents; called off the UI thread
-  std::string samples;                              ///< folder of the bundled samples; empty: none
-  std::string program;                              ///< that shows a study; empty: this one, once more
-  std::string settings_file;                        ///< empty: settings are not kept
-  bool greets_newcomers = false;  ///< without a settings file yet the cards of Getting started come
-  std::string autosave_folder;    ///< empty: no autosave
+  /// what reads proportions off 2D poses; called off the UI thread, once
+  std::function<std::shared_ptr<const LengthReader>()> lengths;
+  FlatEngineMaker flat_engine;           ///< as FlatTools have it; called off the UI thread
+  std::function<std::string()> weights;  ///< checksums, for documents; called off the UI thread
+  std::string samples;                   ///< folder of the bundled samples; empty: none
+  std::string program;                   ///< that shows a study; empty: this one, once more
+  std::string settings_file;             ///< empty: settings are not kept
+  bool greets_newcomers = false;         ///< without a settings file yet the cards of Getting started come
+  std::string autosave_folder;           ///< empty: no autosave
 };
 
 class Studio {
@@ -129,6 +135,10 @@ class Studio {
   void follow_second_body();
   void start_second_body();
   void take_in_second_body(SecondBodyJob& work);
+  void follow_flat();
+  void start_flat(std::string key);
+  void take_in_flat(FlatJob& work);
+  void show_flat_source(const FlatJob& work);
   void note_openings(const Document& before, const std::vector<int64_t>& ids_before, bool changed_before);
   void roll_back_source();
   void note_source_read();

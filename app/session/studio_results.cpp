@@ -135,6 +135,7 @@ void Studio::take_in(SourceOpened& event) {
   session_.source.clips = std::move(event.clips);
   session_.source.clip = event.clip;
   for (TakeState& take : session_.takes) {
+    if (take.flat) continue;  // made from the same file by itself
     take.performed.clear();
     take.another.clear();
     take.shown = Motion{};
@@ -414,7 +415,8 @@ struct Measuring {
   std::vector<Series> series;
   Metrics metrics;
   std::shared_ptr<MotionBlender> blender;
-  std::vector<MomentBetween> moments;  // at the take's tempo, where it has one or a style
+  std::function<std::unique_ptr<Lifter>()> lifter;  // of 2D poses alone
+  std::vector<MomentBetween> moments;               // at the take's tempo, where it has one or a style
 };
 
 /// Of the frames that were performed; beyond them there is nothing to measure against.
@@ -430,6 +432,7 @@ void evaluate_all(Measuring& m, JobControl& control) {
   SourceOptions quiet = m.source;
   quiet.quiet = true;
   const std::unique_ptr<Source> source = open_source(quiet, m.blender.get());
+  if (m.lifter) source->set_tools({{}, {}, m.lifter, {}});
   for (size_t t = 0; t < count; ++t) {
     control.check();
     control.progress(static_cast<float>(t) / static_cast<float>(count));
@@ -461,6 +464,7 @@ void Studio::measure(size_t k) {
   auto m = std::make_shared<Measuring>();
   m->source = source_as_read(session_);
   m->blender = blender_;
+  if (session_.document.flat) m->lifter = services_.lifter;
   m->edits = session_.document.scan_edits;
   m->shown = take.shown;
   m->joints = take.joints;
@@ -513,6 +517,7 @@ void Studio::take_in_results() {
   offer_fills();
   follow_bones();
   follow_second_body();
+  follow_flat();
   measure_finished();
 }
 

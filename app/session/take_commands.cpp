@@ -25,8 +25,15 @@ void check_room(const Document& document) {
   US_CHECK(document.takes.size() < kMostTakes, "there are ", kMostTakes, " takes already");
 }
 
+/// A person in a picture performs 2D poses alone.
+void check_fits(const Document& document) {
+  US_CHECK(document.flat || document.source.path.empty(), name_of(document.source),
+           ": is no file of 2D poses, and a person in a picture performs nothing else");
+}
+
 bool is_edited(const Take& take) {
-  return !take.pose_edits.empty() || !take.target_edits.joints.empty() || take.target_edits.weights ||
+  return (take.flat && !take.flat->lengths.empty()) || !take.pose_edits.empty() ||
+         !take.target_edits.joints.empty() || take.target_edits.weights ||
          !take.target_edits.rest_pose.empty();
 }
 
@@ -43,8 +50,14 @@ void add_targets(Commands& commands) {
   commands.add_edit({"target.add", "Add target", "PATH"}, [](Call& c) {
     check_room(c.document);
     Take take;
-    take.target.path =
-        opened({&c.session.settings.recent_targets}, c.path(0), [&] { return target_file(c, 0); });
+    if (const auto flat = flat_target_file(c.path(0))) {
+      take.target.path = *flat;
+      take.flat.emplace();
+      check_fits(c.document);
+    } else {
+      take.target.path =
+          opened({&c.session.settings.recent_targets}, c.path(0), [&] { return target_file(c, 0); });
+    }
     take.target.not_a_person = NotAPerson::Refuse;
     take.name = fs::path(take.target.path).stem().string();
     remember_folder(c.studio, take.target.path);
@@ -53,8 +66,12 @@ void add_targets(Commands& commands) {
   });
   commands.add_edit({"target.replace", "Replace target", "TAKE PATH"}, [](Call& c) {
     Take& take = c.take();
+    const std::optional<std::string> flat = flat_target_file(c.path(1));
+    if (flat) check_fits(c.document);
     take.target = TargetOptions{};
-    take.target.path = target_file(c, 1);
+    take.target.path = flat ? *flat : target_file(c, 1);
+    take.flat.reset();
+    if (flat) take.flat.emplace();
     take.target.not_a_person = NotAPerson::Refuse;
     take.target_edits = {};
     remember_folder(c.studio, take.target.path);
@@ -177,7 +194,10 @@ void compare(Call& c) {
     const size_t equals = setting.find('=');
     US_CHECK(equals != std::string::npos, "a setting is written as engine=paper, not ", setting);
     const std::string key = present_name(setting.substr(0, equals)), value = setting.substr(equals + 1);
-    set_method(other.method, key, value);
+    if (other.flat)
+      set_flat(*other.flat, key, ArgumentReader({value}));
+    else
+      set_method(other.method, key, value);
     const std::string shown = key == "engine" ? "transfer" : key;  // as the panels call it
     other.name.append(i == 1 ? " (" : ", ").append(shown).append(" ").append(value);
   }

@@ -46,6 +46,18 @@ FieldsOf<S, CameraState> fields(V& visit, S& camera) {
   visit("orthographic", camera.orthographic);
 }
 
+/// What of a canvas is seen: the point in the view's middle, as shares of its sides, and how much larger it
+/// is than whole.
+struct CanvasView {
+  float x = 0.5f, y = 0.5f, zoom = 1;
+};
+template <class V, class S>
+FieldsOf<S, CanvasView> fields(V& visit, S& canvas) {
+  visit("x", canvas.x, Clamped<float>{-1, 2});
+  visit("y", canvas.y, Clamped<float>{-1, 2});
+  visit("zoom", canvas.zoom, Clamped<float>{0.1f, 50});
+}
+
 /// A direction to look from.
 struct ViewPreset {
   const char* name;   ///< of the command view.preset
@@ -148,6 +160,9 @@ struct View {
   std::string metric = "confidence";                  ///< plotted in the timeline
   bool steps = true;                                  ///< marked there
   BoneSurface bone_surface = BoneSurface::Off;
+  std::vector<CanvasView> canvases;  ///< one per pane; missing ones show the whole canvas
+  bool lifted = false;               ///< a source of 2D poses is seen in space, as lifted
+  float reference = 0.45f;           ///< how bright the picture behind a flat take is
 };
 template <class V, class S>
 FieldsOf<S, View> fields(V& visit, S& view) {
@@ -174,6 +189,9 @@ FieldsOf<S, View> fields(V& visit, S& view) {
   visit("metric", view.metric);
   visit("steps", view.steps);
   visit("bone_surface", view.bone_surface, kBoneSurfaceNames);
+  visit("canvases", view.canvases);
+  visit("lifted", view.lifted);
+  visit("reference", view.reference, Clamped<float>{0, 1});
 }
 
 /// What a pane (0 the source, k the take k - 1) is seen through: the first camera while they are linked, else
@@ -186,6 +204,11 @@ inline CameraState camera_of(const View& view, int pane) {
 /// What commands about the camera change.
 inline CameraState active_camera(const View& view) {
   return camera_of(view, view.active_pane);
+}
+
+inline CanvasView canvas_of(const View& view, int pane) {
+  const auto i = static_cast<size_t>(pane);
+  return i < view.canvases.size() ? view.canvases[i] : CanvasView{};
 }
 
 /// Width by height of one of the views in a usual window.

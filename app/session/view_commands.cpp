@@ -159,6 +159,7 @@ void fit(Call& call) {
   constexpr float kAir = 0.06f;    // of the height, around
   constexpr float kTitle = 0.08f;  // of the height stays free above the heads, for words
   const Session& session = call.session;
+  call.session.view.canvases.clear();
   CameraState& c = active_camera(call.session);
   Extent shown = shown_extent(session);
   if (shown.isEmpty()) {
@@ -289,6 +290,19 @@ void add_panes(Commands& commands) {
     US_CHECK(pane >= 0 && pane <= ssize(c.document.takes), "there is no view ", pane);
     choose_pane(c.session, pane);
   });
+  commands.add({"view.canvas", "Move a canvas", "PANE X Y ZOOM: its place in the middle, 0..1; 1 is whole"},
+               [](Call& c) {
+                 const auto pane = c.clamped<int>(0, "pane", 0, 100);
+                 auto& canvases = c.session.view.canvases;
+                 if (pane >= ssize(canvases)) canvases.resize(static_cast<size_t>(pane) + 1);
+                 CanvasView& canvas = canvases[static_cast<size_t>(pane)];
+                 canvas.x = c.clamped(1, "x", -1.f, 2.f), canvas.y = c.clamped(2, "y", -1.f, 2.f);
+                 canvas.zoom = c.clamped(3, "zoom", 0.1f, 50.f);
+               });
+  commands.add({"view.lifted", "Source of 2D poses as lifted", "on|off|toggle"},
+               [](Call& c) { c.session.view.lifted = c.switched(0, c.session.view.lifted); });
+  commands.add({"view.reference", "Brightness of the picture behind", "SHARE: 0 to 1"},
+               [](Call& c) { c.session.view.reference = c.clamped(0, "share", 0.f, 1.f); });
   commands.add({"view.wipe", "Wipe line", "SHARE: 0 to 1 of the width"},
                [](Call& c) { c.session.view.wipe = c.clamped(0, "share", 0.f, 1.f); });
 }

@@ -29,6 +29,14 @@ class FrameDecoder : public RawSink {
   /// Throws Error when nobody is in any frame, or the person who is to perform is not there.
   KeypointReading finish();
 
+  // While frames come.
+  double fps() const { return fps_; }
+  int64_t frame_count() const { return static_cast<int64_t>(frames_.size()); }
+  /// Of the last frame; empty: it could be read.
+  std::string last_problem() const { return frames_.empty() ? "" : frames_.back().problem; }
+  /// Frames are counted as they came, gaps are not.
+  const std::vector<KeypointTrack>& tracks() const { return tracks_; }
+
  private:
   enum class Scale { Pixels, Fractions, Signed };  // the canvas is 0..1, -1..1
   struct Oddities {

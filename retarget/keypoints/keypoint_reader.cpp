@@ -11,6 +11,7 @@
 #include "retarget/formats/scan_frames.hpp"
 #include "retarget/keypoints/frame_decoder.hpp"
 #include "retarget/keypoints/pose_arrays.hpp"
+#include "retarget/keypoints/pose_files.hpp"
 #include "retarget/keypoints/pose_json.hpp"
 
 namespace understudy {
@@ -39,15 +40,6 @@ class OneFrame : public RawSink {
   RawFrame frame_;
   int64_t count_ = 0;
 };
-
-/// The JSON files of a folder, naturally sorted.
-std::vector<std::string> json_files(const std::string& folder) {
-  std::vector<std::string> names;
-  for (std::string& name : folder_files(folder))
-    if (name[0] != '.' && file_suffix(name) == ".json") names.push_back(std::move(name));
-  std::sort(names.begin(), names.end(), natural_less);
-  return names;
-}
 
 /// The last number in each name, where all have one and most are different; else 0, 1, 2.
 std::vector<int64_t> numbers_of_names(const std::vector<std::string>& names) {
@@ -93,27 +85,20 @@ std::string without_keypoints(std::string stem) {
 
 KeypointReading read_json_folder(const std::string& folder, const std::vector<std::string>& names,
                                  const KeypointReaderOptions& options) {
-  const std::string plain = fs::path(folder + "/").lexically_normal().parent_path().string();
-  const std::string first = without_suffix((fs::path(folder) / names.front()).string());
-  FrameDecoder decoder(folder, options, picture_beside({plain, first, without_keypoints(first)}, options));
+  FrameDecoder decoder(folder, options, picture_of_folder(folder, options));
   const std::vector<int64_t> numbers = numbers_of_names(names);
-  for (size_t i = 0; i < names.size(); ++i) {
-    const std::string path = (fs::path(folder) / names[i]).string();
+  for (size_t i = 0; i < names.size(); ++i)
     decoder.frame(numbers[i], [&] {
-      OneFrame one;
-      read_pose_json(parse_pose_json(read_file(path, kLargestFrame), path), path, one);
-      RawFacts facts = one.facts();
-      facts.format = (facts.format == "OpenPose frame" ? "OpenPose" : facts.format) + " folder";
-      RawFrame frame = one.take(path, numbers[i]);
+      RawFacts facts;
+      RawFrame frame = read_pose_file((fs::path(folder) / names[i]).string(), numbers[i], facts);
       decoder.begin(facts);
       return frame;
     });
-  }
   return decoder.finish();
 }
 
 KeypointReading read_folder(const std::string& folder, const KeypointReaderOptions& options) {
-  const std::vector<std::string> names = json_files(folder);
+  const std::vector<std::string> names = pose_files_of(folder);
   US_CHECK(!names.empty(), folder, ": has no JSON files, so no poses");
   if (names.size() == 1) return read_keypoints((fs::path(folder) / names[0]).string(), options);
   return read_json_folder(folder, names, options);
@@ -147,6 +132,31 @@ bool is_pose_text(const std::string& text) {
 
 }  // namespace
 
+std::vector<std::string> pose_files_of(const std::string& folder) {
+  std::vector<std::string> names;
+  for (std::string& name : folder_files(folder))
+    if (name[0] != '.' && file_suffix(name) == ".json") names.push_back(std::move(name));
+  std::sort(names.begin(), names.end(), natural_less);
+  return names;
+}
+
+RawFrame read_pose_file(const std::string& path, int64_t number, RawFacts& facts) {
+  OneFrame one;
+  read_pose_json(parse_pose_json(read_file(path, kLargestFrame), path), path, one);
+  facts = one.facts();
+  facts.format = (facts.format == "OpenPose frame" ? "OpenPose" : facts.format) + " folder";
+  return one.take(path, number);
+}
+
+std::optional<PictureBeside> picture_of_folder(const std::string& folder,
+                                               const KeypointReaderOptions& options) {
+  const std::string plain = fs::path(folder + "/").lexically_normal().parent_path().string();
+  const std::vector<std::string> names = pose_files_of(folder);
+  if (names.empty()) return picture_beside({plain}, options);
+  const std::string first = without_suffix((fs::path(folder) / names.front()).string());
+  return picture_beside({plain, first, without_keypoints(first)}, options);
+}
+
 KeypointReading parse_keypoints(const std::string& json, const std::string& source,
                                 const KeypointReaderOptions& options) {
   FrameDecoder decoder(source, options, {});
@@ -173,7 +183,7 @@ bool looks_like_keypoints(const std::string& path) {
   failure_of([&] {
     std::error_code error;
     if (fs::is_directory(path, error)) {
-      const std::vector<std::string> names = json_files(path);
+      const std::vector<std::string> names = pose_files_of(path);
       found = !names.empty() && looks_like_keypoints((fs::path(path) / names.front()).string());
       return;
     }

@@ -6,6 +6,7 @@
 #include "retarget/base/error.hpp"
 #include "retarget/networks/linear_layer.hpp"
 #include "retarget/pose2d/proportion_input.hpp"
+#include "retarget/pose2d/reference_remarks.hpp"
 
 namespace understudy::nn {
 namespace {
@@ -19,7 +20,9 @@ class NetworkLengthReader final : public LengthReader {
         last_(file.linear(kernels(), "last", kProportionWidth, 2 * kFlatBoneCount)) {}
 
   PoseLengths read(const FlatPose& pose) const override {
-    const ProportionInput input = proportion_input(pose), mirrored = proportion_input(in_mirror(pose));
+    // It has seen few handstands.
+    const FlatPose seen = is_upside_down(pose) ? turned_by_half(pose) : pose;
+    const ProportionInput input = proportion_input(seen), mirrored = proportion_input(in_mirror(seen));
     RowMatrix x(2, kProportionInputs), a, b;
     x << input.numbers, mirrored.numbers;
     first_.apply(x, a, Finish::Relu);

@@ -22,6 +22,7 @@
 #include "retarget/networks/plugin_api.hpp"
 #include "retarget/networks/weights_layout.hpp"
 #include "retarget/pipeline/method_table.hpp"
+#include "retarget/pose2d/limb_transfer.hpp"
 #include "retarget/style/load_style.hpp"
 #include "retarget/style/skeleton_style.hpp"
 #include "retarget/style/words_style.hpp"
@@ -104,6 +105,26 @@ std::shared_ptr<MotionStyle> load_any_style(const StyleChoice& choice) {
       std::make_unique<WordsStyle>(plugin().load_words(style_file(choice))), choice.strength);
   style->set_rights(style_note(choice).rights());
   return style;
+}
+
+/// What an engine of 2D poses is made of.
+struct FlatParts {
+  const NetworkOptions& options;
+  bool touches;
+  std::string weights;  ///< its file; empty: it has none
+};
+struct FlatMaker {
+  const char* name;  ///< one of flat_engines()
+  std::unique_ptr<KeypointTransfer> (*make)(const FlatParts&);
+};
+constexpr FlatMaker kFlatMakers[] = {
+    {"limbs", [](const FlatParts& parts) -> std::unique_ptr<KeypointTransfer> {
+       return std::make_unique<LimbTransfer>(parts.touches);
+     }}};
+
+/// The engine's own file, or the one of that name in the folder.
+std::string weights_of(const NetworkOptions& options, const char* name) {
+  return options.engine_file.empty() ? weights_folder(options) + "/" + name : options.engine_file;
 }
 
 /// At most this many threads of OpenMP: more only cost memory, and a hundred thousand of them the process.
@@ -194,6 +215,17 @@ std::unique_ptr<LengthReader> load_length_reader(const std::string& folder) {
 
 std::unique_ptr<Lifter> load_lifter(const std::string& folder) {
   return load_network_lifter(folder + "/lifter.weights");
+}
+
+std::unique_ptr<KeypointTransfer> load_keypoint_transfer(const NetworkOptions& options,
+                                                         const std::string& name, bool touches) {
+  const MethodChoice& engine = flat_engine_named(name);
+  US_CHECK(engine.weights || options.engine_file.empty(), options.engine_file, ": the engine '", name,
+           "' has no network, so no weights");
+  for (const FlatMaker& one : kFlatMakers)
+    if (name == one.name)
+      return one.make({options, touches, engine.weights ? weights_of(options, engine.weights) : ""});
+  throw Error("nothing makes the engine '" + name + "'");
 }
 
 RuntimeReport runtime_report() {

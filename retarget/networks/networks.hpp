@@ -60,6 +60,12 @@ std::unique_ptr<LengthReader> load_length_reader(const std::string& folder);
 /// Throws Error as load_length_reader does.
 std::unique_ptr<Lifter> load_lifter(const std::string& folder);
 
+/// One of flat_engines(): what makes one person's 2D poses another's. touches: of "limbs", see LimbTransfer.
+/// Weights are the folder's, or options.engine_file; options.engine does not count. Throws Error for another
+/// name, and naming the file when weights are missing, damaged, of another network or of another version.
+std::unique_ptr<KeypointTransfer> load_keypoint_transfer(const NetworkOptions& options,
+                                                         const std::string& name, bool touches);
+
 /// The folder that weights are read from; empty when there is none.
 std::string weights_folder(const NetworkOptions& options);
 

@@ -31,6 +31,14 @@ const MethodChoices& engines() {
   return all;
 }
 
+const MethodChoices& flat_engines() {
+  static const MethodChoices all = {
+      {"limbs", "Limbs", "rebuilt limbs",
+       "rebuilds 2D poses from the mid-hip outwards, each bone as much longer as the other person's is",
+       nullptr}};
+  return all;
+}
+
 const MethodChoices& extractors() {
   static const MethodChoices all = {
       {"dense", "Dense", "dense extractor", "every point of the scan votes for where the joints are",
@@ -41,7 +49,17 @@ const MethodChoices& extractors() {
 }
 
 const MethodChoice& engine_named(const std::string& name) {
+  const bool is_flat = index_of(engines(), name) < 0 && index_of(flat_engines(), name) >= 0;
+  US_CHECK(!is_flat, "the engine '", name, "' is for 2D poses; for what moves in space there are ",
+           names_of(engines(), ", "));
   return named(engines(), name, "engine");
+}
+
+const MethodChoice& flat_engine_named(const std::string& name) {
+  const bool is_deep = index_of(flat_engines(), name) < 0 && index_of(engines(), name) >= 0;
+  US_CHECK(!is_deep, "the engine '", name, "' is for what moves in space; for 2D poses there are ",
+           names_of(flat_engines(), ", "));
+  return named(flat_engines(), name, "engine");
 }
 
 const MethodChoice& extractor_named(const std::string& name) {

@@ -1,4 +1,5 @@
-// The table of engines (motion transfer) and extractors: what a take, a command line or a report may choose.
+// The tables of engines (motion transfer, in space and in pictures) and extractors: what a take, a command
+// line or a report may choose.
 #pragma once
 
 #include <memory>
@@ -21,10 +22,14 @@ struct MethodChoice {
 using MethodChoices = std::vector<MethodChoice>;
 
 const MethodChoices& engines();
+/// Of 2D poses; nn::load_keypoint_transfer makes them.
+const MethodChoices& flat_engines();
 const MethodChoices& extractors();
 
-/// Throws Error with the names that there are: "there is no engine 'x': " and the names.
+/// Throws Error with the names that there are: "there is no engine 'x': " and the names; of an engine
+/// of the other kind it says so.
 const MethodChoice& engine_named(const std::string& name);
+const MethodChoice& flat_engine_named(const std::string& name);
 const MethodChoice& extractor_named(const std::string& name);
 
 std::vector<std::string> names_of(const MethodChoices& choices);

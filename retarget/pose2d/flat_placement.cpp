@@ -9,13 +9,7 @@ constexpr std::array<int, 8> kFeet = {body25::RightAnkle,    body25::LeftAnkle, 
                                       body25::LeftHeel,      body25::RightBigToe, body25::LeftBigToe,
                                       body25::RightSmallToe, body25::LeftSmallToe};
 
-/// The middle of the body: the mid-hip, without one the neck, or whatever is seen.
-Vec2 middle_of_body(const FlatPose& pose) {
-  for (const int point : {static_cast<int>(body25::MidHip), static_cast<int>(body25::Neck)})
-    if (pose.has(point)) return pose.at(point);
-  const FlatBox box = box_of(pose);
-  return box.isEmpty() ? Vec2(Vec2::Zero()) : Vec2(box.center());
-}
+constexpr std::array<int, 2> kMiddles = {body25::MidHip, body25::Neck};
 
 /// How far down the picture the feet reach: of the points that both poses have.
 std::optional<float> lowest_of(const FlatPose& pose, const FlatPose& also) {
@@ -26,32 +20,74 @@ std::optional<float> lowest_of(const FlatPose& pose, const FlatPose& also) {
   return lowest;
 }
 
-void move_points(const Vec2& way, FlatPoints& points) {
-  for (Eigen::Index i = 0; i < points.rows(); ++i)
-    if (points(i, 2) > 0) points.row(i).head<2>() += way.transpose();
+Vec2 middle_of_box(const FlatPose& pose) {
+  const FlatBox box = box_of(pose);
+  return box.isEmpty() ? Vec2(Vec2::Zero()) : Vec2(box.center());
+}
+
+template <class Change>
+void change_points(FlatPose& pose, const Change& change) {
+  for (int point = 0; point < kBodyPoints; ++point)
+    if (pose.has(point)) pose.set(point, change(pose.at(point)), pose.confidence(point));
+  for (FlatPoints* points : {&pose.left_hand, &pose.right_hand, &pose.face})
+    for (Eigen::Index i = 0; i < points->rows(); ++i)
+      if ((*points)(i, 2) > 0)
+        points->row(i).head<2>() = change(Vec2(points->row(i).head<2>().transpose())).transpose();
 }
 
 }  // namespace
 
+void forget_feet(FlatPose& pose) {
+  for (const int point : kFeet) pose.forget(point);
+}
+
 void move_pose(const Vec2& way, FlatPose& pose) {
-  for (int point = 0; point < kBodyPoints; ++point)
-    if (pose.has(point)) pose.set(point, pose.at(point) + way, pose.confidence(point));
-  for (FlatPoints* points : {&pose.left_hand, &pose.right_hand, &pose.face}) move_points(way, *points);
+  change_points(pose, [&](const Vec2& place) -> Vec2 { return place + way; });
+}
+
+void scale_pose(float times, FlatPose& pose) {
+  Vec2 middle = middle_of_box(pose);
+  for (size_t k = kMiddles.size(); k-- > 0;)
+    if (pose.has(kMiddles[k])) middle = pose.at(kMiddles[k]);
+  change_points(pose, [&](const Vec2& place) -> Vec2 { return middle + times * (place - middle); });
 }
 
 FlatPlacement::FlatPlacement(const std::optional<FlatPose>& standing, float target_leg)
     : standing_(standing), leg_(target_leg) {}
 
+/// Where the first pose goes: onto a middle that the target's picture shows, too, else box onto box.
+void FlatPlacement::start(const FlatPose& source, const FlatPose& pose) {
+  started_ = true;
+  way_ = Vec2::Zero();
+  if (!standing_) {
+    for (size_t k = kMiddles.size(); k-- > 0;)
+      if (source.has(kMiddles[k]) && pose.has(kMiddles[k]))
+        way_ = source.at(kMiddles[k]) - pose.at(kMiddles[k]);
+    return;
+  }
+  way_ = middle_of_box(*standing_) - middle_of_box(pose);
+  for (size_t k = kMiddles.size(); k-- > 0;)
+    if (standing_->has(kMiddles[k]) && pose.has(kMiddles[k]))
+      way_ = standing_->at(kMiddles[k]) - pose.at(kMiddles[k]);
+}
+
+/// By the mid-hip, without one by the neck, which goes on from where it was when both were last seen.
+Vec2 FlatPlacement::way_of(const FlatPose& source, float ratio, const FlatPose& pose) {
+  const auto is_seen = [&](size_t k) { return source.has(kMiddles[k]) && pose.has(kMiddles[k]); };
+  for (size_t k = kMiddles.size(); k-- > 0;)
+    if (anchors_[k] && is_seen(k))
+      way_ = anchors_[k]->to + ratio * (source.at(kMiddles[k]) - anchors_[k]->from) - pose.at(kMiddles[k]);
+  for (size_t k = 0; k < kMiddles.size(); ++k)
+    if (is_seen(k) && (k > 0 || !anchors_[k]))
+      anchors_[k] = Anchor{source.at(kMiddles[k]), pose.at(kMiddles[k]) + way_};
+  return way_;
+}
+
 void FlatPlacement::push(const FlatPose& source, float source_leg, FlatPose& pose) {
   if (is_nobody(source)) return;
   const float ratio = leg_ / std::max(source_leg, 1e-6f);
-  const Vec2 middle = middle_of_body(source);
-  if (!started_) {
-    from_ = middle;
-    to_ = standing_ ? middle_of_body(*standing_) : middle;
-    started_ = true;
-  }
-  Vec2 way = to_ + ratio * (middle - from_) - middle_of_body(pose);
+  if (!started_) start(source, pose);
+  Vec2 way = way_of(source, ratio, pose);
   // Up and down as the feet go, where they are seen.
   const auto low = lowest_of(source, pose), made = lowest_of(pose, source);
   if (low && made) {

@@ -24,11 +24,13 @@ Proportions FlatRetargeter::in_size_of(const Proportions& source) const {
   return sized;
 }
 
-FlatPose FlatRetargeter::push(const CleanPose& seen, const Proportions& source) {
+FlatPose FlatRetargeter::push(const CleanPose& seen, const Proportions& source, float growth) {
+  US_CHECK(growth > 0, "somebody cannot be ", growth, " times as large");
   if (!seen.is_usable) return last_;
   const bool as_there = place_ == FlatPlace::Reference && target_.standing;
   const Proportions performs = as_there ? target_.lengths : in_size_of(source);
   last_ = engine_->transfer(seen.pose, source, performs);
+  if (growth != 1) scale_pose(1 / growth, last_);
   // In the source's size legs of other proportions make steps of another length, on the source's own way.
   placement_.push(seen.pose, as_there ? leg_of(source.length) : leg_of(target_.lengths.length), last_);
   return last_;

@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "retarget/keypoints/keypoint_filter.hpp"
 #include "retarget/keypoints/keypoint_track.hpp"
@@ -17,6 +18,7 @@ struct FlatTarget {
   Proportions lengths;
   std::optional<FlatPose> standing;  ///< none: proportions alone
   Canvas canvas;                     ///< of that picture; unknown without one
+  std::vector<std::string> remarks;  ///< on that person, see reference_remarks
 };
 
 /// Online: no pose depends on a later frame. What the filter calls unusable stays the last pose.
@@ -24,8 +26,10 @@ class FlatRetargeter {
  public:
   /// Throws Error when a length of the target is not above 0.
   FlatRetargeter(std::unique_ptr<KeypointTransfer> engine, FlatTarget target, FlatPlace place);
-  /// source: lengths of who is seen, as far as they are known by now. Before anybody was seen: nobody.
-  FlatPose push(const CleanPose& seen, const Proportions& source);
+  /// source: lengths of who is seen, as far as they are known by now. growth: how many times as large as those
+  /// the source is in this frame, which the result shall not be; 1: it grows as the source does. Before
+  /// anybody was seen: nobody.
+  FlatPose push(const CleanPose& seen, const Proportions& source, float growth = 1);
 
  private:
   Proportions in_size_of(const Proportions& source) const;

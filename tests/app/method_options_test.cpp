@@ -35,6 +35,16 @@ TEST(MethodOptions, EverySwitchOfAMethodIsAnOption) {
   EXPECT_TRUE(same(by_old_names, all));
 }
 
+TEST(MethodOptions, OneOptionChoosesTheEngineOfWhatTheSourceIs) {
+  EXPECT_EQ(flat_engine(parsed("")), "limbs");
+  EXPECT_EQ(flat_engine(parsed("--engine limbs")), "limbs");
+  EXPECT_EQ(failure_of([] { flat_engine(parsed("--engine positions")); }),
+            "the engine 'positions' is for what moves in space; for 2D poses there are " +
+                names_of(flat_engines(), ", "));
+  EXPECT_EQ(parsed("").method.engine, "copy");
+  EXPECT_THROW(parsed("--engine hybrid"), CLI::ValidationError);
+}
+
 TEST(ImportOptionsOfTheCommandLine, TurnByTheirNameAndTheOlderOne) {
   for (const char* line : {"--turn 30 --target-turn 20", "--yaw 30 --target-yaw 20"}) {
     CLI::App app;

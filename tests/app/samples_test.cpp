@@ -8,8 +8,10 @@
 #include <set>
 #include <sstream>
 
+#include "render/image.hpp"
 #include "retarget/base/error.hpp"
 #include "retarget/formats/mesh_reader.hpp"
+#include "retarget/keypoints/keypoint_reader.hpp"
 
 namespace understudy::app {
 namespace {
@@ -79,6 +81,26 @@ TEST(Samples, HoldTwoDifferentTargetsStandingOnTheFloor) {
   EXPECT_NEAR(child.vertices.col(1).maxCoeff(), 1.15f, 0.01f);
 }
 
+TEST(Samples, HoldADanceAsPosesAndAGirlToDanceInAPicture) {
+  for (const fs::path& folder : {written(), fs::path(US_SOURCE_DIR) / "assets/samples"}) {
+    const KeypointReading film = read_keypoints((folder / "poses").string());
+    EXPECT_EQ(film.frames.size(), 90u);
+    EXPECT_EQ(film.canvas, (Canvas{1024, 768}));
+    ASSERT_EQ(film.tracks.size(), 2u) << "somebody walks by";
+    EXPECT_EQ(film.performing().poses.size(), 90u);
+    const auto ahead = [&](int64_t frame) {
+      return film.tracks[1].at(frame)->at(body25::Neck).x() - film.tracks[0].at(frame)->at(body25::Neck).x();
+    };
+    EXPECT_LT(ahead(0), -200) << "he comes from the left,";
+    EXPECT_GT(ahead(89), 50) << "and passes her";
+    const KeypointReading girl = read_keypoints((folder / "reference.json").string());
+    EXPECT_EQ(girl.canvas, (Canvas{1024, 768}));
+    EXPECT_EQ(points_seen(*girl.performing().at(0)), 19) << "18, and the middle of the hips";
+    EXPECT_EQ(render::read_png((folder / "reference.png").string()).height, 768);
+    EXPECT_LT(size_of(folder / "poses") + fs::file_size(folder / "reference.png"), 1'000'000u);
+  }
+}
+
 TEST(Samples, TakeUnderFifteenMegabytesAndLeaveNoParts) {
   EXPECT_LT(size_of(written()), 15'000'000u);
   for (const auto& entry : fs::recursive_directory_iterator(written()))
@@ -101,7 +123,8 @@ TEST(Samples, BundledOnesAreWhatTheProgramMakes) {
 
 TEST(Samples, ReadmeNamesEveryFileWithItsChecksum) {
   const std::string readme = text_of(written() / "README.md");
-  for (const char* word : {"scan/", "walk/", "animal/", "target_adult.glb", "target_child.glb", "MIT"})
+  for (const char* word : {"scan/", "walk/", "animal/", "target_adult.glb", "target_child.glb", "poses/",
+                           "reference.json", "reference.png", "MIT"})
     EXPECT_NE(readme.find(word), std::string::npos) << word;
 }
 

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "retarget/base/file.hpp"
+#include "retarget/base/part_file.hpp"
 #include "retarget/keypoints/keypoint_reader.hpp"
 #include "retarget/keypoints/keypoint_writers.hpp"
 #include "retarget/pose2d/flat_placement.hpp"
@@ -62,6 +63,7 @@ TEST_F(FlatCommand, ATrackIsPerformedOnTheReferencesPicture) {
   const Json report = Json::parse(read_file(out("report.json")));
   EXPECT_GT(report["target_lengths"]["trunk"]["length"], report["source_lengths"]["trunk"]["length"]);
   EXPECT_NE(done.err.find("from one pose"), std::string::npos) << done.err;
+  EXPECT_EQ(report["engine"], "limbs");
 }
 
 TEST_F(FlatCommand, PicturesAndTablesAreWrittenToo) {
@@ -86,6 +88,63 @@ TEST_F(FlatCommand, SameInputSameBytesAndNoPoseDependsOnALaterFrame) {
   for (int64_t t = 0; t < 6; ++t) EXPECT_EQ(*part.performing().at(t), *whole.performing().at(t)) << t;
 }
 
+TEST_F(FlatCommand, AFolderThatIsBeingWrittenIsFollowed) {
+  write_file(scratch.path("track/done"), "");
+  const Finished done = perform({"--out", out("live.json"), "--follow"});
+  ASSERT_EQ(done.code, 0) << done.err;
+  EXPECT_NE(done.out.find("frame 7 good"), std::string::npos) << done.out;
+  ASSERT_EQ(perform({"--out", out("file.json"), "--no-look-ahead"}).code, 0);
+  const KeypointReading live = read_keypoints(out("live.json")), file = read_keypoints(out("file.json"));
+  ASSERT_EQ(live.frames.size(), 8u);
+  for (int64_t t = 0; t < 8; ++t) EXPECT_EQ(*live.performing().at(t), *file.performing().at(t)) << t;
+  expect_clean_failure(run_program({"retarget", "--source", out("live.json"), "--target",
+                                    scratch.path("reference.json"), "--out", out("a.json"), "--follow"}),
+                       "only a folder of 2D poses can be followed");
+}
+
+TEST_F(FlatCommand, OddReferencesAreToldInASentence) {
+  FlatPose dog;  // seen from the side
+  const std::vector<std::pair<int, Vec2>> points = {
+      {body25::Nose, {60, 170}},          {body25::Neck, {100, 200}},
+      {body25::MidHip, {250, 205}},       {body25::RightShoulder, {98, 201}},
+      {body25::LeftShoulder, {103, 199}}, {body25::RightElbow, {96, 250}},
+      {body25::LeftElbow, {106, 248}},    {body25::RightWrist, {95, 320}},
+      {body25::LeftWrist, {104, 318}},    {body25::RightHip, {248, 206}},
+      {body25::LeftHip, {252, 204}},      {body25::RightKnee, {262, 255}},
+      {body25::LeftKnee, {240, 252}},     {body25::RightAnkle, {280, 318}},
+      {body25::LeftAnkle, {262, 320}}};
+  for (const auto& [point, place] : points) dog.set(point, place, 0.6f);
+  write_controlnet(scratch.path("dog.json"), reading(dog));
+  const Finished done = run_program({"retarget", "--source", scratch.path("track"), "--target",
+                                     scratch.path("dog.json"), "--out", out("dog_out.json")});
+  ASSERT_EQ(done.code, 0) << done.err;
+  EXPECT_NE(done.err.find("is on all fours: if that is no person"), std::string::npos) << done.err;
+  const FlatBox box = box_of(*read_keypoints(out("dog_out.json")).performing().at(7));
+  EXPECT_LT(box.sizes().maxCoeff(), 640);
+  EXPECT_GT(box.sizes().maxCoeff(), 50);
+}
+
+TEST_F(FlatCommand, WhoComesNearerGrowsOrDoesNot) {
+  KeypointReading nearer = reading(flat_person());
+  for (int t = 1; t < 90; ++t) add(nearer, flat_person(300, 1 + 0.005f * static_cast<float>(t)));
+  write_controlnet(scratch.path("nearer.json"), nearer);
+  const auto growth = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> arguments = {"retarget",
+                                          "--source",
+                                          scratch.path("nearer.json"),
+                                          "--target",
+                                          scratch.path("reference.json"),
+                                          "--out",
+                                          out("near_out.json")};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    EXPECT_EQ(run_program(arguments).code, 0);
+    const KeypointReading made = read_keypoints(out("near_out.json"));
+    return box_of(*made.performing().at(89)).sizes().y() / box_of(*made.performing().at(0)).sizes().y();
+  };
+  EXPECT_NEAR(growth({}), 1.445, 0.03);
+  EXPECT_NEAR(growth({"--no-growth"}), 1, 0.1);
+}
+
 TEST_F(FlatCommand, MeasureTellsOfATrackWithoutTruth) {
   const Finished done = run_program({"measure", scratch.path("track"), "--out", out("figures.json")});
   ASSERT_EQ(done.code, 0) << done.err;
@@ -103,6 +162,13 @@ TEST_F(FlatCommand, BadInputIsASentence) {
   expect_clean_failure(perform({"--out", out("a.json"), "--person", "anna"}), "anna");
   expect_clean_failure(perform({"--out", out("a.json"), "--preview", out("p.png")}), "--preview");
   expect_clean_failure(perform({"--out", scratch.path("reference.json")}), "reference.json");
+  expect_clean_failure(perform({"--out", out("a.json"), "--engine", "copy"}),
+                       "the engine 'copy' is for what moves in space");
+  expect_clean_failure(perform({"--out", out("a.json"), "--engine-weights", scratch.path("reference.json")}),
+                       "has no network");
+  expect_clean_failure(run_program({"retarget", "--source", scans(), "--target", target(), "--engine",
+                                    "limbs", "--out", out("a.glb")}),
+                       "the engine 'limbs' is for 2D poses");
   expect_clean_failure(run_program({"retarget", "--source", scratch.path("track"), "--target", target(),
                                     "--out", out("a.glb"), "--times", "t.csv"}),
                        "is 2D poses");

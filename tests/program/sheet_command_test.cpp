@@ -1,4 +1,5 @@
-// `understudy sheet`, and the pictures of styles that are made with it.
+// `understudy sheet`, and the pictures that are made with it.
+#include <algorithm>
 #include <filesystem>
 
 #include "render/image.hpp"
@@ -8,6 +9,8 @@ namespace understudy::tests {
 namespace {
 
 namespace fs = std::filesystem;
+
+const std::string kSamples = US_SOURCE_DIR "/assets/samples/";
 
 class Sheet : public ShippedProgram {
  protected:
@@ -42,6 +45,22 @@ TEST_F(Sheet, FilesBeginWhereTheyAreAskedTo) {
   EXPECT_NE(later.out.find("1 rows, 1 moments"), std::string::npos) << later.out;
 }
 
+TEST_F(Sheet, PosesAndPicturesOfThemHaveRowsOfTheirOwn) {
+  ASSERT_EQ(run_program({"retarget", "--source", kSamples + "poses", "--target", kSamples + "reference.json",
+                         "--out", scratch.path("frames")})
+                .code,
+            0);
+  const Finished done = sheet({kSamples + "poses", kSamples + "reference.json", scratch.path("frames"),
+                               "--every", "0.5", "--out", scratch.path("flat.png")});
+  ASSERT_EQ(done.code, 0) << done.err;
+  EXPECT_NE(done.out.find("3 rows, 6 moments"), std::string::npos) << done.out;
+  const render::Image picture = render::read_png(scratch.path("flat.png"));
+  EXPECT_EQ(picture.width, 1800);
+  EXPECT_GT(std::count(picture.pixels.begin(), picture.pixels.end(), uint8_t{0}), picture.width * 100)
+      << "poses stand on black";
+  expect_clean_failure(sheet({kSamples + "poses", walk(), "--out", out("mixed.png")}), "poses");
+}
+
 TEST_F(Sheet, RefusesWhatItCannotShow) {
   const std::string file = scratch.path("x.png");
   expect_clean_failure(sheet({walk(), "--captions", "a,b", "--out", file}),
@@ -53,19 +72,31 @@ TEST_F(Sheet, RefusesWhatItCannotShow) {
   expect_clean_failure(sheet({scratch.path("none.glb"), "--out", file}), "none.glb");
 }
 
-TEST_F(Sheet, ThePicturesOfStylesAreMadeByTheirScript) {
-  ProgramOptions options;
-  options.program = US_SOURCE_DIR "/screenshots/performance.sh";
-  options.environment = {"UNDERSTUDY=" US_PROGRAM, "OUT=" + scratch.path("pictures")};
-  options.patience_s = 900;
-  fs::create_directories(scratch.path("pictures"));
-  const Finished run = run_program({}, options);
-  ASSERT_EQ(run.code, 0) << run.err;
-  for (const char* const name : {"47_performance", "48_style_wipe", "49_style_trails", "50_teach_style",
-                                 "52_style_walk", "53_style_stimuli"}) {
-    EXPECT_GE(render::read_png(scratch.path("pictures/" + std::string(name) + ".png")).width, 1280) << name;
-    EXPECT_TRUE(fs::exists(US_SOURCE_DIR "/screenshots/" + std::string(name) + ".webp")) << name;
+/// Those that screenshots/SCRIPT makes without a data folder, and that are in the repository.
+class PictureScript : public Sheet {
+ protected:
+  void expect_made(const std::string& script, const std::vector<std::string>& names) {
+    ProgramOptions options;
+    options.program = US_SOURCE_DIR "/screenshots/" + script;
+    options.environment = {"UNDERSTUDY=" US_PROGRAM, "OUT=" + scratch.path("pictures")};
+    options.patience_s = 900;
+    fs::create_directories(scratch.path("pictures"));
+    const Finished run = run_program({}, options);
+    ASSERT_EQ(run.code, 0) << run.err;
+    for (const std::string& name : names) {
+      EXPECT_GE(render::read_png(scratch.path("pictures/" + name + ".png")).width, 1280) << name;
+      EXPECT_TRUE(fs::exists(US_SOURCE_DIR "/screenshots/" + name + ".webp")) << name;
+    }
   }
+};
+
+TEST_F(PictureScript, MakesThoseOfStyles) {
+  expect_made("performance.sh", {"47_performance", "48_style_wipe", "49_style_trails", "50_teach_style",
+                                 "52_style_walk", "53_style_stimuli"});
+}
+
+TEST_F(PictureScript, MakesThoseOfFlatPeople) {
+  expect_made("flat.sh", {"55_flat_dance", "56_flat_crowd", "57_flat_turn"});
 }
 
 }  // namespace

@@ -108,7 +108,12 @@ TEST(DocumentFile, OfTheProgramOfBeforeOpensAndIsWrittenAlike) {
   wanted.source.times.clear();
   wanted.source.blend.reset();
   wanted.source.complete = 0, wanted.source.markers.clear();
+  wanted.source.layout.clear(), wanted.source.canvas.clear(), wanted.source.point_edits.clear();
+  wanted.source.stature = SourceOptions().stature, wanted.source.fov = SourceOptions().fov;
+  wanted.source.smoothing = 1;
+  wanted.flat.reset();
   for (Take& take : wanted.takes) {
+    take.flat.reset();
     take.method.part_refiner = take.method.hand_contacts = true, take.method.predict = false;
     for (const Proportion& one : kProportions) take.method.*one.value = Method().*one.value;
     take.target_edits.rest_pose.clear();
@@ -138,11 +143,12 @@ TEST(DocumentFile, OfTheProgramOfBeforeOpensAndIsWrittenAlike) {
   }
   auto& view = written["view"];
   for (const char* added : {"cube", "overlay", "light", "background", "background_color", "ghosts_by_time",
-                            "steps", "bone_surface"})
+                            "steps", "bone_surface", "canvases", "lifted", "reference"})
     view.erase(added);
   for (const char* layers : {"source", "take"})
     for (const char* added : {"wireframe", "scene", "bones"}) view[layers].erase(added);
-  for (const char* added : {"person", "people", "times", "complete", "markers"})
+  for (const char* added : {"person", "people", "times", "complete", "markers", "layout", "canvas", "stature",
+                            "fov", "smoothing", "point_edits"})
     written["source"].erase(added);
   written.erase("bones");
   EXPECT_EQ(json_text(written), without);

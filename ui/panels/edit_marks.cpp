@@ -8,6 +8,7 @@
 #include "retarget/math/rotation.hpp"
 #include "retarget/motion_space/steps.hpp"
 #include "retarget/skeleton/made_frames.hpp"
+#include "ui/panels/flat.hpp"
 #include "ui/panels/timeline.hpp"
 
 namespace understudy::ui {
@@ -85,6 +86,21 @@ void add_source_edits(std::vector<EditMark>& all, const app::Session& session) {
                    "edit.remove skeleton " + number});
   }
   add_diamonds(all, drags, {"drags"}, 0);
+}
+
+void add_point_edits(std::vector<EditMark>& all, const app::Session& session) {
+  const auto& edits = session.document.source.point_edits;
+  for (size_t i = 0; i < edits.size(); ++i) {
+    const std::string number = std::to_string(i), words = edit_words(edits[i]);
+    EditMark mark;
+    if (const auto* const drag = std::get_if<PointDrag>(&edits[i]))
+      mark.mark = {"point." + number, words, drag->frame, drag->frame, true, drag->falloff, 0, kGreen};
+    else if (const auto* const exchange = std::get_if<SidesExchange>(&edits[i]))
+      mark.mark = {"point." + number, words, exchange->first, exchange->last, false, 0, 0, kOrange};
+    mark.move = {"points", number};
+    mark.remove = "flat.edit_remove " + number;
+    all.push_back(std::move(mark));
+  }
 }
 
 /// Of each frame of a fill the part of the row that its doubt takes: all of it from 15 cm on.
@@ -232,6 +248,7 @@ std::vector<EditMark> edit_marks(const app::Session& session, const std::vector<
          ""});
   add_person_edits(all, session);
   add_source_edits(all, session);
+  add_point_edits(all, session);
   if (take == nullptr) return all;
   const std::string k = std::to_string(session.selected_take);
   add_fills(all, session, k);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <iterator>
 
 #include "app/session/take_export.hpp"
 #include "app/study/trial_exports.hpp"
@@ -35,6 +36,8 @@ constexpr FileDialog kDialogs[] = {
      FileKind::Any, true},
     {"open_target", "target.add", "Add target", "Add", FileKind::Target},
     {"replace_target", "target.replace", "Replace target", "Replace", FileKind::Target},
+    {"load_proportions", "flat.load_proportions", "Load proportions", "Load", FileKind::Any},
+    {"save_proportions", "flat.save_proportions", "Save proportions", "Save", FileKind::Any, true},
     {"style_file", "method.style", "Open a style", "Use", FileKind::Any},
     {"open_document", "document.open", "Open document", "Open", FileKind::Document},
     {"save_as", "document.save_as", "Save document", "Save", FileKind::Document, true},
@@ -89,6 +92,11 @@ std::string second_body_name(const app::Session& session) {
   return fs::path(session.document.bones.second.path).stem().string() + " performs.glb";
 }
 
+std::string proportions_name(const app::Session& session) {
+  const app::Take* const take = selected_take(session);
+  return (take != nullptr ? app::safe_file_name(take->name) : "person") + " proportions.json";
+}
+
 /// The folder, or the next above it that is there.
 std::string there_of(const std::string& folder) {
   std::error_code failed;
@@ -130,6 +138,7 @@ void choose_file(const app::Session& session, FilesState& state, FilePurpose pur
                               : is_of_study(purpose)                     ? study_name(session, purpose)
                               : purpose == FilePurpose::ExportBones      ? bones_name(session)
                               : purpose == FilePurpose::ExportSecondBody ? second_body_name(session)
+                              : purpose == FilePurpose::SaveProportions  ? proportions_name(session)
                                                                          : document_name(session);
     const fs::path proposed = name.empty() ? usual : name;
     request.name = proposed.filename().string();
@@ -152,7 +161,9 @@ std::optional<std::string> draw_files(const app::Session& session, PanelContext&
     return std::nullopt;
   }
   app::Arguments arguments = {*path}, words = app::split_line(dialog_of(state.purpose).command);
-  if (state.purpose == FilePurpose::ReplaceTarget || state.purpose == FilePurpose::Style)
+  constexpr FilePurpose kOfTake[] = {FilePurpose::ReplaceTarget, FilePurpose::Style,
+                                     FilePurpose::LoadProportions, FilePurpose::SaveProportions};
+  if (std::find(std::begin(kOfTake), std::end(kOfTake), state.purpose) != std::end(kOfTake))
     arguments.insert(arguments.begin(), std::to_string(session.selected_take));
   if (state.purpose == FilePurpose::BodyMotion || state.purpose == FilePurpose::Relocate)
     arguments.insert(arguments.begin(), state.first);

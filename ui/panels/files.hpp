@@ -23,6 +23,8 @@ enum class FilePurpose {
   ExportSecondBody,
   Target,
   ReplaceTarget,
+  LoadProportions,
+  SaveProportions,
   Style,
   Document,
   SaveDocument,  ///< answers the question about unsaved changes where one waits

@@ -14,6 +14,7 @@
 #include "retarget/base/index.hpp"
 #include "retarget/base/text.hpp"
 #include "retarget/formats/file_formats.hpp"
+#include "ui/panels/flat.hpp"
 #include "ui/panels/performance.hpp"
 #include "ui/panels/rig.hpp"
 #include "ui/panels/rows.hpp"
@@ -280,7 +281,9 @@ void draw_source(const app::Session& session, PanelContext& context) {
   Ui& ui = context.ui;
   if (!section(ui, "inspector.source", "Source")) return;
   if (session.document.source.path.empty()) {
-    hint(ui, "No source is open. Drop a folder of scans or a motion anywhere, or choose one.");
+    hint(ui, "No source is open. Drop a folder of scans, a motion or 2D poses anywhere, or choose one.");
+  } else if (session.document.flat) {
+    draw_flat_source(session, context);
   } else {
     draw_source_facts(session, ui);
     draw_people(session, context);
@@ -290,20 +293,23 @@ void draw_source(const app::Session& session, PanelContext& context) {
       draw_source_fields(session, context);
     draw_blend_with(session, context);
   }
-  ask_button(context, {"source.open", "Open source\u2026", "A scan or a motion", "dialog.open open_source"});
+  ask_button(context,
+             {"source.open", "Open source\u2026", "A scan, a motion or 2D poses", "dialog.open open_source"});
 }
 
 void draw_takes(const app::Session& session, PanelContext& context) {
   Ui& ui = context.ui;
   if (!section(ui, "inspector.takes", "Takes")) return;
   const auto& takes = session.document.takes;
-  if (takes.empty()) hint(ui, "No target yet. Drop a character anywhere, or add one.");
+  if (takes.empty())
+    hint(ui, "No target yet. Drop a character, or a person's 2D poses, anywhere, or add one.");
   for (size_t i = 0; i < takes.size(); ++i) {
     const std::string k = std::to_string(i), name = "take." + k;
     const IdScope id(name);
     const bool selected = static_cast<int>(i) == session.selected_take;
     const app::Method& method = takes[i].method;
-    const std::string how = method.engine + (method.offsets ? "" : ", no offsets");
+    const std::string how =
+        takes[i].flat ? takes[i].flat->engine : method.engine + (method.offsets ? "" : ", no offsets");
     const float room = ImGui::CalcTextSize(how.c_str()).x + ui.px(14);
     const ImVec2 at = ImGui::GetCursorScreenPos();
     const float width = ImGui::GetContentRegionAvail().x;
@@ -488,6 +494,8 @@ void draw_method(const app::Session& session, PanelContext& context) {
 void draw_inspector(const app::Session& session, PanelContext& context) {
   draw_source(session, context);
   draw_takes(session, context);
+  const app::Take* const take = selected_take(session);
+  if (take != nullptr && take->flat) return draw_flat_take(session, context);
   draw_target_facts(session, context);
   draw_rig(session, context);
   draw_performance(session, context);

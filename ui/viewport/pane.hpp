@@ -7,6 +7,7 @@
 #include "render/gl/object.hpp"
 #include "render/picking.hpp"
 #include "render/renderer.hpp"
+#include "ui/viewport/flat_canvas.hpp"
 #include "ui/viewport/scene_builder.hpp"
 
 namespace understudy::ui {
@@ -86,6 +87,8 @@ struct Pane {
   PaneScene made;
   EditPreview preview;
   PaneCanvas canvas;
+  FlatCanvas flat;
+  bool is_flat = false;      ///< the last frame was of `flat`
   std::optional<Rect> cube;  ///< of the view cube
   int cube_face = -1;        ///< under the pointer
   bool cube_held = false;

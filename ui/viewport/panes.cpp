@@ -80,6 +80,8 @@ std::vector<PaneContent> panes_of(const Session& session) {
     case Layout::Single:
       return {pane_of(std::clamp(session.view.active_pane, 0, takes))};
     case Layout::Overlay:
+      if (app::is_canvas(session, 0) || app::is_flat_take(session, session.selected_take))
+        return {pane_of(std::clamp(session.view.active_pane, 0, takes))};
       return {overlay(session)};
     case Layout::Wipe:
       if (takes == 0) return {pane_of(0)};
@@ -114,7 +116,7 @@ std::string pane_title(const Session& session, const PaneContent& pane) {
 std::string pane_method(const Session& session, const PaneContent& pane) {
   const app::Take* take =
       pane.takes.size() == 1 && !pane.source ? at_or_null(session.document.takes, pane.takes[0]) : nullptr;
-  return take == nullptr ? "" : method_words(take->method);
+  return take == nullptr || take->flat ? "" : method_words(take->method);
 }
 
 namespace {
@@ -138,10 +140,12 @@ std::string pane_made(const Session& session, const PaneContent& pane, int frame
 }
 
 std::string pane_hint(const Session& session, const PaneContent& pane) {
-  if (pane.source && session.document.source.path.empty()) return "Drop a scan folder or a motion here";
+  if (pane.source && session.document.source.path.empty())
+    return "Drop a scan folder, a motion or 2D poses here";
   if (!pane.source && first_take(session, pane) == nullptr) return "Drop a character here";
   if (const app::TakeState* take = pane.source ? nullptr : first_take(session, pane)) {
     if (!take->problem.empty()) return take->problem;
+    if (app::is_flat_take(session, pane.takes[0])) return take->flat ? "" : "Reading the person\u2026";
     if (shows_as_loaded(session, pane)) return "";
     if (!take->ready) return "Preparing the target\u2026";
     if (shows_rest(session, pane)) return "";
@@ -158,6 +162,7 @@ const app::TakeState* first_take(const Session& session, const PaneContent& pane
 int frame_count(const Session& session, const PaneContent& pane) {
   if (pane.source) return session.source.frames.size();
   const app::TakeState* take = first_take(session, pane);
+  if (take != nullptr && take->flat) return static_cast<int>(take->flat->poses.size());
   return take != nullptr ? ssize(take->joints) : 0;
 }
 

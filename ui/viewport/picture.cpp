@@ -6,7 +6,9 @@
 #include "render/text.hpp"
 #include "retarget/base/error.hpp"
 #include "retarget/base/index.hpp"
+#include "ui/gui/theme.hpp"
 #include "ui/panels/panel.hpp"
+#include "ui/viewport/flat_canvas.hpp"
 #include "ui/viewport/pane.hpp"
 
 namespace understudy::ui {
@@ -115,8 +117,35 @@ Image PictureMaker::picture(const Session& session, app::FrameCache& cache, cons
   return all;
 }
 
+namespace {
+
+/// As FlatCanvas shows it.
+Image canvas_in(const Session& session, const PaneContent& pane, const PictureOptions& options) {
+  const Theme& look = theme(session.settings.dark ? ThemeKind::Dark : ThemeKind::Light);
+  Image image(options.size.width, options.size.height, Vec3(look.panel.x, look.panel.y, look.panel.z));
+  const Canvas canvas = canvas_of_pane(session, pane);
+  const Image picture = canvas.is_known() ? canvas_picture(session, pane) : Image();
+  if (picture.width == 0) return image;
+  const Rect whole{{0, 0}, {static_cast<float>(image.width), static_cast<float>(image.height)}};
+  const bool is_wipe = session.view.layout == app::Layout::Wipe;
+  const Rect place = canvas_place(whole, canvas, app::canvas_of(session.view, is_wipe ? 1 : pane.number));
+  for (int y = 0; y < image.height; ++y)
+    for (int x = 0; x < image.width; ++x) {
+      const float u = (static_cast<float>(x) + 0.5f - place.min.x) / place.width(),
+                  v = (static_cast<float>(y) + 0.5f - place.min.y) / place.height();
+      if (u < 0 || v < 0 || u >= 1 || v >= 1) continue;
+      const int column = static_cast<int>(u * static_cast<float>(picture.width)),
+                row = static_cast<int>(v * static_cast<float>(picture.height));
+      std::copy_n(picture.at(column, row), 3, image.at(x, y));
+    }
+  return image;
+}
+
+}  // namespace
+
 Image PictureMaker::one(const Session& session, app::FrameCache& cache, const PaneContent& pane,
                         const render::Camera& camera, const PictureOptions& options) {
+  if (app::is_canvas(session, pane.number)) return canvas_in(session, pane, options);
   looks_of(session, looks_, pane), unposed_look(session, looks_, pane);
   looks_.wait();
   PanePictures pictures;

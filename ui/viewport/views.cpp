@@ -86,7 +86,7 @@ void Views::forget() {
 
 bool Views::waiting() const {
   return std::any_of(panes_.begin(), panes_.end(), [this](const auto& pane) {
-    return pane->keeper.waiting() || (!pane->canvas.fine() && !performing_);
+    return !pane->is_flat && (pane->keeper.waiting() || (!pane->canvas.fine() && !performing_));
   });
 }
 
@@ -160,6 +160,11 @@ void Views::draw_row(const Frame& f, const std::vector<PaneContent>& contents, c
   for (size_t i = 0; i < contents.size(); ++i) {
     if (rects[i].width() < kLeastSide || rects[i].height() < kLeastSide) continue;
     Pane& pane = *panes_[i];
+    pane.is_flat = app::is_canvas(f.session, contents[i].number);
+    if (pane.is_flat) {
+      draw_canvas(f, pane, contents[i], rects[i]);
+      continue;
+    }
     set_up(f, pane, contents[i], {rects[i], pane_camera(f.session, contents[i])});
     use_cube(f, pane, rects[i]);
     const std::string name = "view." + std::to_string(contents[i].number);
@@ -172,8 +177,45 @@ void Views::draw_row(const Frame& f, const std::vector<PaneContent>& contents, c
   }
 }
 
+void Views::draw_canvas(const Frame& f, Pane& pane, const PaneContent& content, const Rect& rect) {
+  pane.content = content;
+  pane.cube.reset();
+  const std::string name = "view." + std::to_string(content.number);
+  picture_button(name.c_str(), rect);
+  f.context.ui.mark(name);
+  pane.flat.interact(f.session, content, rect, f.context);
+  pane.flat.draw(f.session, content, rect, rect, f.context);
+}
+
+/// Two canvases over each other; both are moved together.
+void Views::draw_flat_wipe(const Frame& f, const std::vector<PaneContent>& contents, const Rect& area) {
+  const float line = wipe_line(f, area);
+  picture_button("view.both", area);
+  panes_[0]->flat.interact(f.session, contents[0], area, f.context);
+  for (size_t i = 0; i < 2; ++i) {
+    panes_[i]->content = contents[i], panes_[i]->is_flat = true;
+    panes_[i]->cube.reset();
+    const Rect part = i == 0 ? Rect{area.min, {line, area.max.y}} : Rect{{line, area.min.y}, area.max};
+    f.context.ui.mark("view." + std::to_string(contents[i].number), part);
+    panes_[i]->flat.draw(f.session, contents[i], area, part, f.context);
+  }
+  draw_wipe_line(f, area, line);
+}
+
+void Views::draw_wipe_line(const Frame& f, const Rect& area, float line) {
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  const float middle = area.min.y + 0.5f * area.height();
+  list.AddLine({line, area.min.y}, {line, area.max.y}, color(f.context.ui.theme().text, 0.85f),
+               f.context.ui.px(1.5f));
+  list.AddCircleFilled({line, middle}, f.context.ui.px(7), color(f.context.ui.theme().text), 24);
+}
+
 /// Two pictures over each other in one place, seen through the camera of the first.
 void Views::draw_wipe(const Frame& f, const std::vector<PaneContent>& contents, const Rect& area) {
+  const auto is_flat = [&](const PaneContent& content) { return app::is_canvas(f.session, content.number); };
+  if (is_flat(contents[0]) && is_flat(contents[1])) return draw_flat_wipe(f, contents, area);
+  if (is_flat(contents[0]) || is_flat(contents[1])) return draw_row(f, contents, area);
+  for (auto& pane : panes_) pane->is_flat = false;
   const float line = wipe_line(f, area);
   const render::Camera camera = pane_camera(f.session, contents[0]);
   for (size_t i = 0; i < 2; ++i) set_up(f, *panes_[i], contents[i], {area, camera});
@@ -189,11 +231,7 @@ void Views::draw_wipe(const Frame& f, const std::vector<PaneContent>& contents, 
     f.context.ui.mark("view." + std::to_string(contents[i].number), part);
     show(f, *panes_[i], part, i == 1);
   }
-  ImDrawList& list = *ImGui::GetWindowDrawList();
-  const float middle = area.min.y + 0.5f * area.height();
-  list.AddLine({line, area.min.y}, {line, area.max.y}, color(f.context.ui.theme().text, 0.85f),
-               f.context.ui.px(1.5f));
-  list.AddCircleFilled({line, middle}, f.context.ui.px(7), color(f.context.ui.theme().text), 24);
+  draw_wipe_line(f, area, line);
   draw_cube_of(f.context.ui, *panes_[0]);
 }
 
@@ -529,7 +567,7 @@ void Views::keep_view_when_following_changes(const Frame& f) {
   for (size_t i = 0; i < panes_.size(); ++i) {
     const Pane& pane = *panes_[i];
     if (i > 0 && f.session.view.linked) break;
-    if (pane.view.rect.empty() || shows_rest(f.session, pane.content)) continue;
+    if (pane.is_flat || pane.view.rect.empty() || shows_rest(f.session, pane.content)) continue;
     f.context.queue.push_back(
         {"view.camera_state", camera_arguments(f.session, pane.content, pane.view.camera)});
   }

@@ -42,7 +42,10 @@ class Views {
   void prepare(const Frame& f, size_t count);
   void place_legend(const Frame& f, Rect& area);
   void draw_row(const Frame& f, const std::vector<PaneContent>& contents, const Rect& area);
+  void draw_canvas(const Frame& f, Pane& pane, const PaneContent& content, const Rect& rect);
   void draw_wipe(const Frame& f, const std::vector<PaneContent>& contents, const Rect& area);
+  void draw_flat_wipe(const Frame& f, const std::vector<PaneContent>& contents, const Rect& area);
+  static void draw_wipe_line(const Frame& f, const Rect& area, float line);
   static float wipe_line(const Frame& f, const Rect& area);
   void set_up(const Frame& f, Pane& pane, const PaneContent& content, const PaneView& view);
   void interact(const Frame& f, Pane& pane);

@@ -78,16 +78,28 @@ bool FileFilter::passes(const std::string& name) const {
   return suffixes.empty() || std::find(suffixes.begin(), suffixes.end(), file_suffix(name)) != suffixes.end();
 }
 
+namespace {
+
+/// And what holds 2D poses or proportions.
+std::vector<std::string> with_poses(std::vector<std::string> suffixes) {
+  for (const char* const suffix : {".json", ".npz", ".npy"})
+    if (std::find(suffixes.begin(), suffixes.end(), suffix) == suffixes.end()) suffixes.emplace_back(suffix);
+  return suffixes;
+}
+
+}  // namespace
+
 FileFilter filter_of(FileKind kind) {
   static const std::array<FileFilter, 10> kFilters = {{
-      {"Scans and motions", format_suffixes(kScanFrame | kScanSequence | kMotion), true},
-      {"Targets", format_suffixes(kTarget)},
+      {"Scans, motions and 2D poses", with_poses(format_suffixes(kScanFrame | kScanSequence | kMotion)),
+       true},
+      {"Targets", with_poses(format_suffixes(kTarget))},
       {"AMASS-format motions", format_suffixes(kBody)},  // both are .npz
       {"Tables of times or markers", {".csv", ".tsv", ".txt"}},
       {"Understudy documents", format_suffixes(kDocument)},
       {"Perceptual studies", format_suffixes(kStudy)},
       {"Answers", {".csv"}},
-      {"All supported files", format_suffixes(~0u), true},
+      {"All supported files", with_poses(format_suffixes(~0u)), true},
       {"All files", {}, true},
       {"Folders", {}, false, true},
   }};

@@ -113,6 +113,7 @@ constexpr std::array<Entry, static_cast<size_t>(Icon::Count)> kIcons = {{
   {"move", four_arrows},
   {"layers", [](Pen& p) { p.line({{8, 1.8f}, {14.4f, 5.2f}, {8, 8.6f}, {1.6f, 5.2f}}, true), p.line({{1.8f, 8.4f}, {8, 11.6f}, {14.2f, 8.4f}}), p.line({{1.8f, 11.2f}, {8, 14.4f}, {14.2f, 11.2f}}); }},
   {"menu", [](Pen& p) { p.line({{2.4f, 4}, {13.6f, 4}}), p.line({{2.4f, 8}, {13.6f, 8}}), p.line({{2.4f, 12}, {13.6f, 12}}); }},
+  {"lock", [](Pen& p) { p.block({3.4f, 7.2f}, {12.6f, 14}, 1.2f), p.line({{5.2f, 7.2f}, {5.2f, 5}, {6.6f, 2.8f}, {9.4f, 2.8f}, {10.8f, 5}, {10.8f, 7.2f}}); }},
 }};
 // clang-format on
 

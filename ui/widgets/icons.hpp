@@ -14,7 +14,7 @@ enum class Icon : int {
   Play, Pause, StepBack, StepForward, ToStart, ToEnd, Loop, Undo, Redo, Reset,
   Folder, File, Image, Video, Home, Clock, Copy, Trash,
   Warning, Check, Close, ChevronRight, ChevronDown, ChevronUp,
-  Person, Skeleton, Mesh, Points, Brush, Camera, Chart, Select, Move, Layers, Menu,
+  Person, Skeleton, Mesh, Points, Brush, Camera, Chart, Select, Move, Layers, Menu, Lock,
   // clang-format on
   Count
 };

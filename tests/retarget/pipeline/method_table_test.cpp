@@ -10,7 +10,7 @@ namespace understudy {
 namespace {
 
 TEST(MethodTable, EveryRowHasANameOfItsOwnAndWords) {
-  for (const MethodChoices* const choices : {&engines(), &extractors()}) {
+  for (const MethodChoices* const choices : {&engines(), &flat_engines(), &extractors()}) {
     std::set<std::string> names, labels;
     for (const MethodChoice& choice : *choices) {
       EXPECT_TRUE(names.insert(choice.name).second) << choice.name;
@@ -37,6 +37,17 @@ TEST(MethodTable, AnUnknownNameIsToldWithThoseThatThereAre) {
   } catch (const Error& error) {
     EXPECT_EQ(std::string(error.what()).rfind("there is no engine 'hybrid': copy, ", 0), 0u) << error.what();
   }
+}
+
+TEST(MethodTable, AnEngineOfTheOtherKindIsToldApart) {
+  EXPECT_STREQ(flat_engine_named("limbs").label, "Limbs");
+  EXPECT_EQ(failure_of([] { engine_named("limbs"); }),
+            "the engine 'limbs' is for 2D poses; for what moves in space there are copy, paper, positions");
+  EXPECT_EQ(
+      failure_of([] { flat_engine_named("copy"); }).rfind("the engine 'copy' is for what moves in space", 0),
+      0u);
+  EXPECT_EQ(failure_of([] { flat_engine_named("hybrid"); }).rfind("there is no engine 'hybrid': limbs", 0),
+            0u);
 }
 
 }  // namespace

@@ -31,7 +31,7 @@ float feet_of(const FlatPose& pose) {
 /// Twice as large, in the right half of a picture.
 FlatTarget large_one() {
   const FlatPose standing = moved(flat_person(800, 2), 0, 300);
-  return {lengths_of(standing), standing, {1600, 900}};
+  return {lengths_of(standing), standing, {1600, 900}, {}};
 }
 
 TEST(FlatRetargeter, StartsWhereTheTargetStandsAndGoesAsFarAsItsLegsGo) {
@@ -86,6 +86,42 @@ TEST(FlatRetargeter, AFrameThatCannotBeUsedRepeatsTheLastPose) {
   CleanPose lost = clean(moved(flat_person(), 90, 0));
   lost.is_usable = false;
   EXPECT_EQ(retargeter.push(lost, source), first);
+}
+
+TEST(FlatRetargeter, AReferenceWithoutHipsIsMetAtItsNeck) {
+  FlatTarget target = large_one();
+  for (const int point : {body25::MidHip, body25::RightHip, body25::LeftHip}) target.standing->forget(point);
+  forget_feet(*target.standing);
+  FlatRetargeter retargeter = retargeter_of(target);
+  const FlatPose made = retargeter.push(clean(flat_person()), lengths_of(flat_person()));
+  EXPECT_LT((made.at(body25::Neck) - target.standing->at(body25::Neck)).norm(), 0.01f);
+}
+
+TEST(FlatRetargeter, HipsThatGoOutOfSightMakeNoJump) {
+  FlatRetargeter retargeter = retargeter_of(large_one());
+  const Proportions source = lengths_of(flat_person());
+  FlatPose half = moved(flat_person(), 30, 0);
+  const FlatPose whole = retargeter.push(clean(half), source);
+  for (const int point : {body25::MidHip, body25::RightHip, body25::LeftHip}) half.forget(point);
+  EXPECT_LT((retargeter.push(clean(half), source).at(body25::Neck) - whole.at(body25::Neck)).norm(), 0.01f);
+  half = moved(half, 10, 0);
+  EXPECT_NEAR(retargeter.push(clean(half), source).at(body25::Neck).x() - whole.at(body25::Neck).x(), 20,
+              0.1);
+}
+
+TEST(FlatRetargeter, GrowthIsKeptOrTakenBack) {
+  const FlatTarget target = large_one();
+  const Proportions source = lengths_of(flat_person());
+  const auto height_of = [](const FlatPose& pose) { return box_of(pose).sizes().y(); };
+  FlatRetargeter keeps = retargeter_of(target), loses = retargeter_of(target);
+  const float before = height_of(keeps.push(clean(flat_person()), source));
+  loses.push(clean(flat_person()), source);
+  const FlatPose nearer = flat_person(300, 1.5f);
+  EXPECT_NEAR(height_of(keeps.push(clean(nearer), source)), 1.5f * before, 1);
+  const FlatPose same = loses.push(clean(nearer), source, 1.5f);
+  EXPECT_NEAR(height_of(same), before, 1);
+  EXPECT_NEAR(feet_of(same), feet_of(*target.standing), 1);  // the floor is where it was
+  EXPECT_THROW(loses.push(clean(nearer), source, 0), Error);
 }
 
 TEST(FlatRetargeter, ABoneWithoutLengthIsRefused) {

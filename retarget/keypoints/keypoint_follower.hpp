@@ -1,0 +1,49 @@
+// A folder of 2D poses that a detector is still writing, frame by frame.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "retarget/keypoints/keypoint_reader.hpp"
+
+namespace understudy {
+
+struct KeypointFollowOptions {
+  double timeout_s = 10;            ///< the folder ends when no new frame came for so long
+  double poll_s = 0.03;             ///< between two looks
+  std::function<bool()> cancelled;  ///< asked at every look; true ends the folder
+};
+
+/// A frame as it came.
+struct FollowedPose {
+  int64_t number = 0;
+  double dt = 0;                 ///< seconds since the last frame
+  std::optional<FlatPose> pose;  ///< of who performs; none: they are not in it
+  std::string problem;           ///< why there is none, one sentence
+};
+
+/// Hands out one JSON after the other, each as soon as it is whole: a later one is there, or nobody wrote to
+/// it between two looks and it can be read. Numbers that are left out come as frames that are missing. A
+/// file `done` or `.done` ends the folder. Who performs is the person asked for; else the largest in the
+/// first frame with anybody, as nobody knows yet who is seen longest. One thread at a time.
+class KeypointFollower {
+ public:
+  /// Throws Error when the folder cannot be read.
+  KeypointFollower(const std::string& folder, const KeypointReaderOptions& options,
+                   const KeypointFollowOptions& follow = {});
+  ~KeypointFollower();
+  /// None at the end. Throws Error where no frame came at all.
+  std::optional<FollowedPose> next();
+  /// Frames per second.
+  double fps() const;
+  /// All frames that were handed out, and what was decided: as read_keypoints gives it. Throws as that. Once.
+  KeypointReading finish();
+
+ private:
+  class Folder;
+  std::unique_ptr<Folder> folder_;
+};
+
+}  // namespace understudy
