@@ -22,6 +22,7 @@
 #include "retarget/networks/plugin_api.hpp"
 #include "retarget/networks/weights_layout.hpp"
 #include "retarget/pipeline/method_table.hpp"
+#include "retarget/pose2d/lift_transfer.hpp"
 #include "retarget/pose2d/limb_transfer.hpp"
 #include "retarget/style/load_style.hpp"
 #include "retarget/style/skeleton_style.hpp"
@@ -118,8 +119,12 @@ struct FlatMaker {
   std::unique_ptr<KeypointTransfer> (*make)(const FlatParts&);
 };
 constexpr FlatMaker kFlatMakers[] = {
-    {"limbs", [](const FlatParts& parts) -> std::unique_ptr<KeypointTransfer> {
+    {"limbs",
+     [](const FlatParts& parts) -> std::unique_ptr<KeypointTransfer> {
        return std::make_unique<LimbTransfer>(parts.touches);
+     }},
+    {"lift", [](const FlatParts& parts) -> std::unique_ptr<KeypointTransfer> {
+       return std::make_unique<LiftTransfer>(load_network_lifter(parts.weights), parts.touches);
      }}};
 
 /// The engine's own file, or the one of that name in the folder.

@@ -35,7 +35,10 @@ const MethodChoices& flat_engines() {
   static const MethodChoices all = {
       {"limbs", "Limbs", "rebuilt limbs",
        "rebuilds 2D poses from the mid-hip outwards, each bone as much longer as the other person's is",
-       nullptr}};
+       nullptr},
+      {"lift", "Lift", "lifted bones",
+       "lifts 2D poses into space, where bones take the other person's lengths; what is cut off is made up",
+       "lifter.weights"}};
   return all;
 }
 
