@@ -8,6 +8,7 @@
 #include "app/run/retargeted_source.hpp"
 #include "app/run/target_file.hpp"
 #include "retarget/base/error.hpp"
+#include "retarget/formats/npz.hpp"
 #include "retarget/metrics/joint_metrics.hpp"
 
 namespace understudy::app {
@@ -56,7 +57,11 @@ LiftedTrack performed(const Case& c, const EvalOptions& options, const Truth& tr
   const auto target = open_target(aim, networks);
   Retargeter retargeter(std::move(networks), retarget_options(options.how));
   retargeter.set_target(target->target);
-  const SourceOptions from = case_source(c);
+  SourceOptions from = case_source(c);
+  const Npz npz = read_npz(c.truth);
+  const auto fov = npz.find("fov_deg");
+  US_CHECK(fov != npz.end() && fov->second.values.size() == 1, c.truth, ": has no fov_deg, one number");
+  from.fov = static_cast<double>(fov->second.values[0]);
   const auto source = open_source(from);
   RetargetedSource retargeted(*source, retargeter, from, source_tools(options.how));
   LiftedTrack track;

@@ -17,7 +17,6 @@ namespace fs = std::filesystem;
 
 constexpr int kLiftPairs = 30;
 constexpr float kLiftJitter_m = 0.015f, kLiftNearest_m = 1.5f;
-constexpr float kFarFov_deg = 1;  // of a camera without perspective, about
 
 /// One that nobody comes too near.
 Pinhole lift_view(const std::vector<Pose>& poses, Rng& rng) {
@@ -62,6 +61,15 @@ std::vector<Pose> before(const Pinhole& camera, std::vector<Pose> poses) {
   return poses;
 }
 
+/// Vertical, degrees; the narrowest that a lifter takes where there is no perspective.
+NpyArray fov_of(const Pinhole& camera) {
+  const float fov = 2 * std::atan(camera.centre.y() / camera.focal) * 180 / kPi;
+  NpyArray array;
+  array.shape = {1};
+  array.values = {camera.orthographic ? 1 : fov};
+  return array;
+}
+
 std::vector<Joints> joints_of(const Joints& rest, const std::vector<Pose>& poses) {
   std::vector<Joints> joints;
   for (const Pose& pose : poses) joints.push_back(forward_kinematics(rest, pose).joints);
@@ -69,10 +77,8 @@ std::vector<Joints> joints_of(const Joints& rest, const std::vector<Pose>& poses
 }
 
 void write_lift_case(const fs::path& folder, const KeypointReading& seen, const ExactPerson& target,
-                     const Npz& truth, const Pinhole& camera, bool noisy) {
+                     const Npz& truth, bool noisy) {
   fs::create_directories(folder);
-  const float fov =
-      camera.orthographic ? kFarFov_deg : 360 / kPi * std::atan(camera.centre.y() / camera.focal);
   write_keypoint_npz((folder / "source.npz").string(), seen);
   write_target((folder / "target.obj").string(), target);
   write_npz((folder / "truth.npz").string(), truth);
@@ -81,7 +87,6 @@ void write_lift_case(const fs::path& folder, const KeypointReading& seen, const 
                                                {"target", "target.obj"},
                                                {"truth", "truth.npz"},
                                                {"lifted", true},
-                                               {"fov", fov},
                                                {"tags", {"lifting", noisy ? "noisy" : "clean"}}});
 }
 
@@ -113,10 +118,11 @@ int make_lift_suite(const SuiteOptions& options, const std::function<void(const 
               {"joints", frames_array(joints_of(cast.person(b).rest, shown), {kJointCount, 3})},
               {"target_joints", frames_array(std::vector<Joints64>{target.joints}, {kJointCount, 3})}};
     truth["target_joints"].shape = {kJointCount, 3};
+    truth["fov_deg"] = fov_of(camera);
     for (const bool noisy : {false, true}) {
       const std::string name = printed("%03d_%s", pair, noisy ? "noisy" : "clean");
       write_lift_case(fs::path(options.out) / name, seen_by(camera, source, poses, noisy, rng), target, truth,
-                      camera, noisy);
+                      noisy);
       done(name);
     }
   }

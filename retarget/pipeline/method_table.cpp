@@ -38,9 +38,8 @@ const MethodChoices& flat_engines() {
        nullptr},
       {"paper", "Paper", "paper's engine", "the network of paper 5 decodes a pose's code with the person's",
        "pose2d.weights"},
-      {"lift", "Lift", "lifted poses",
-       "lifts 2D poses into space, onto the other person's bones, and sees them again; makes up what is "
-       "missing",
+      {"lift", "Lift", "lifted bones",
+       "lifts 2D poses into space, where bones take the other person's lengths; what is cut off is made up",
        "lifter.weights"}};
   return all;
 }

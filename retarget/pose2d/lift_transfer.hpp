@@ -9,10 +9,10 @@
 
 namespace understudy {
 
-/// Bones of the first 15 points lie as lifted and are as long as the person's, whatever the source's lengths;
-/// they are seen from afar, by the camera's axes. Of them, what a picture cut off or a detector missed is made
-/// up with low confidence. Eyes, ears, toes, heels, hands and face go with them as by LimbTransfer. Poses come
-/// in their order: it remembers.
+/// Bones of the first 15 points lie as lifted and are as long as the person's, whatever the source's
+/// lengths; they are seen from afar, along the camera's axes. Of them, what a picture cut off or a detector
+/// missed is made up with low confidence. Eyes, ears, toes, heels, hands and face go with them as by
+/// LimbTransfer. Poses come in their order: it remembers.
 class LiftTransfer final : public KeypointTransfer {
  public:
   /// touches: see LimbTransfer; dt: seconds between poses. Throws Error without a lifter.

@@ -22,7 +22,7 @@ inline LiftedWalk lifted_walk(float yaw, size_t most = 60) {
   static const FlatPerson person =
       flat_person(body.vertices, body.joints, head_vertices(body.vertices, body.joints));
   const Motion motion = builtin_motion("walk", body.joints);
-  Pinhole camera = looking_at(Vec3(0, 0.9f, 0), camera_axes(yaw, 0.05f), 8);
+  Pinhole camera = looking_at(Vec3(0, 0.9f, 0), camera_axes(yaw, 0), 8);
   camera.focal = 1500;
   camera.centre = {360, 360};
   LiftedWalk walk;
