@@ -18,7 +18,7 @@ Action declare_cases(CLI::App& command) {
                              "extraction",      "occluded", "partial",  "sensors",    "scenes",
                              "inbetween",       "predict",  "sparse",   "creatures",  "creatures-captured",
                              "creatures-pairs", "style",    "pose2d",   "pose2d-odd", "pose2d-noisy",
-                             "pose2d-seen"}));
+                             "pose2d-seen", "lifting"}));
   command.add_option("--out", options->out, "folder that the cases go into")->required();
   command.add_option("--split", options->split,
                      "split of splits.json, of creatures dev or train (default: dev)");

@@ -6,6 +6,7 @@
 
 #include "app/cli/flat_evaluation.hpp"
 #include "app/cli/gap_evaluation.hpp"
+#include "app/cli/lift_evaluation.hpp"
 #include "app/cli/style_evaluation.hpp"
 #include "app/run/case_source.hpp"
 #include "app/run/file_figures.hpp"
@@ -82,7 +83,7 @@ void evaluate_performance(const Case& c, const EvalOptions& options, Networks ne
            ": --oracle skeleton needs source_joints");
   Retargeter retargeter(std::move(networks), retarget_options(options.how));
   if (character) retargeter.set_target(character->target);
-  RetargetedSource retargeted(*source, retargeter, from);
+  RetargetedSource retargeted(*source, retargeter, from, source_tools(options.how));
   for (size_t t = 0;; ++t) {
     check_interrupt("in case " + c.name);
     US_CHECK(!oracle || t <= oracle->size(), c.name, ": the truth has too few source joints");
@@ -380,6 +381,10 @@ void evaluate_case(Bench& bench, const std::string& folder, const Case& c, CaseR
   if (c.style) return bench.styles().evaluate(c, result);
   if (c.flat) {
     bench.flat_poses().evaluate(c, result);
+    return breakdown.add_kind(c.tags.size() > 1 ? c.tags[1] : c.name, result.metrics);
+  }
+  if (c.lifted) {
+    evaluate_lifted(c, options, result);
     return breakdown.add_kind(c.tags.size() > 1 ? c.tags[1] : c.name, result.metrics);
   }
   check_options(options, c);

@@ -112,7 +112,7 @@ std::vector<Role> roles_in(const ExportOptions& options, const std::string& path
 void perform(const ExportOptions& options, const Role& role, Retargeter& retargeter, ExportInput& input) {
   const std::string& path = role.source.path;
   const auto source = open_source(role.source);
-  RetargetedSource retargeted(*source, retargeter, role.source, motion_space_loader(options.how));
+  RetargetedSource retargeted(*source, retargeter, role.source, source_tools(options.how));
   const bool is_together = options.targets.size() > 1;
   CharacterClip clip{is_together ? clip_name(path) : role.called, source->fps(), {}};
   std::vector<float> doubt_m;

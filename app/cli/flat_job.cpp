@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "app/run/exports.hpp"
+#include "app/run/keypoint_source.hpp"
 #include "app/run/report.hpp"
 #include "retarget/base/error.hpp"
 #include "retarget/base/log.hpp"
@@ -47,8 +48,6 @@ void add_flat_options(CLI::App& command, FlatOptions& flat) {
   command.add_option_function<std::string>(
       "--target-canvas", [&flat](const std::string& text) { flat.target.canvas = parse_canvas(text); },
       "of a target that is 2D poses: its picture's size (default: as the file or a picture beside it tells)");
-  command.add_option("--layout", flat.source.layout,
-                     "of 2D poses: the order of the points (default: as names or their count tell)");
   command.add_option("--target-person", flat.target.person,
                      "who of several people in a target that is 2D poses (default: who is seen longest)");
   command
@@ -75,12 +74,13 @@ void add_flat_options(CLI::App& command, FlatOptions& flat) {
 }
 
 bool is_flat_job(const JobOptions& job) {
-  if (!job.source.motion.empty() || job.source.blend) return false;
-  // A folder that is still being written may have no pose in it yet; the target tells, then.
+  const bool onto_flat = is_proportions_file(job.target.path) || looks_like_keypoints(job.target.path);
+  // A folder that is still being written may have no pose in it yet.
   std::error_code failed;
-  const bool may_come = job.source.follow && std::filesystem::is_directory(job.source.path, failed) &&
+  const bool may_come = job.source.follow && job.source.motion.empty() && !job.source.blend &&
+                        std::filesystem::is_directory(job.source.path, failed) &&
                         std::filesystem::is_empty(job.source.path, failed);
-  return looks_like_keypoints(may_come ? job.target.path : job.source.path);
+  return onto_flat && (may_come || is_keypoint_source(job.source));
 }
 
 void run_flat_job(const JobOptions& job, FlatOptions flat) {
@@ -89,9 +89,8 @@ void run_flat_job(const JobOptions& job, FlatOptions flat) {
   flat.source.fps = job.source.fps;
   if (job.poses.canvas) flat.source.canvas = *job.poses.canvas;
   flat.source.person = job.source.person;
+  flat.source.layout = job.source.layout;
   flat.target.path = job.target.path;
-  US_CHECK(is_proportions_file(flat.target.path) || looks_like_keypoints(flat.target.path), flat.target.path,
-           ": 2D poses are performed by a person in a picture: 2D poses, too, or proportions");
   check_not_read(job.out, {flat.source.path, flat.target.path});
   US_CHECK(!job.source.follow || std::filesystem::is_directory(flat.source.path), flat.source.path,
            ": only a folder of 2D poses can be followed");

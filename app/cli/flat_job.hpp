@@ -9,7 +9,8 @@ namespace understudy::app {
 /// Options of 2D poses that retarget has beside those of JobOptions.
 void add_flat_options(CLI::App& command, FlatOptions& flat);
 
-/// Whether the job's source is 2D poses.
+/// Whether the job's source is 2D poses, and its target somebody in a picture (2D poses, too, or
+/// proportions): other targets perform in space what is lifted.
 bool is_flat_job(const JobOptions& job);
 
 /// Does it. Paths, the person, --fps and --weights are those of `job`. Throws Error; also where the job wants

@@ -30,6 +30,7 @@ std::unique_ptr<Studio> headless_studio(const std::string& weights) {
   services.networks = program.networks;
   services.motion_space = program.motion_space;
   services.motion_coder = program.motion_coder;
+  services.lifter = program.lifter;
   return std::make_unique<Studio>(std::move(services));
 }
 

@@ -120,7 +120,7 @@ Running start(const JobOptions& options) {
   job.retargeter = std::make_unique<Retargeter>(std::move(networks), retarget_options(options.how));
   job.retargeter->set_target(job.character->target);
   job.retargeted = std::make_unique<RetargetedSource>(*job.source, *job.retargeter, options.source,
-                                                      motion_space_loader(options.how));
+                                                      source_tools(options.how));
   job.has_style = options.how.method.style.any() || options.tempo.any();
   job.tempo.emplace(options.tempo, job.character->target.joints, job.source->fps());
   if (!options.preview.empty()) job.moments.emplace(job.source->count());

@@ -65,7 +65,7 @@ Measured measured(const MeasureOptions& options, const Networks& networks) {
   auto opened = open_source(options.source);
   look_with(retargeter, *opened);
   const auto source = hide_topology(std::move(opened), options.source, options.registered);
-  RetargetedSource retargeted(*source, retargeter, options.source, motion_space_loader(options.how));
+  RetargetedSource retargeted(*source, retargeter, options.source, source_tools(options.how));
   Measured result(source->fps(), options.every);
   log::Tally problems;
   while (const auto frame = retargeted.next()) {

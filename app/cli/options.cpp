@@ -99,7 +99,8 @@ void add_source_options(CLI::App& command, SourceOptions& source) {
   add_scan_options(command, source.edits);
   command.add_option(
       "--person", source.person,
-      "who of several people in scans: a number from 1, largest, or all (default: who is seen best)");
+      "who of several people in scans: a number from 1, largest, or all (default: who is seen best); in 2D "
+      "poses: the number that the file tells, else 1, 2 ... (default: who is seen longest)");
   command.add_option("--motion", source.motion,
                      "AMASS-format motion that an SMPL-format source body performs");
   command.add_option("--source-betas", source.betas, "shape parameters of the source body")->delimiter(',');
@@ -127,6 +128,16 @@ void add_source_options(CLI::App& command, SourceOptions& source) {
       ->check(CLI::Range(1.0, 1000.0));
   command.add_option("--markers", source.markers,
                      "CSV of markers for --complete: seconds,name,x,y,z in the scans' units and axes");
+  command.add_option("--layout", source.layout,
+                     "of 2D poses: the order of the points (default: as names or their count tell)");
+  command
+      .add_option("--stature", source.stature,
+                  "of the person in 2D poses, when they are performed in space, metres (default: 1.7)")
+      ->check(CLI::Range(0.3, 3.0));
+  command
+      .add_option("--fov", source.fov,
+                  "vertical field of view of the camera that saw the 2D poses, degrees (default: 50)")
+      ->check(CLI::Range(1.0, 170.0));
   command.add_option("--up", source.import.up, "the source's up axis: auto, x, y, z, -x, -y, -z");
   command.add_option("--units", source.import.units, "the source's units: auto, m, dm, cm, mm, in");
   command.add_option("--height", source.import.height,
@@ -239,9 +250,7 @@ std::string flat_engine(const MethodOptions& how) {
 FlatTools flat_tools(const MethodOptions& how) {
   const nn::NetworkOptions options = network_options(how);
   return {nn::load_length_reader(nn::weights_folder(options)),
-          [options](const std::string& name, bool touches) {
-            return nn::load_keypoint_transfer(options, name, touches);
-          }};
+          [options](const FlatEngine& wanted) { return nn::load_keypoint_transfer(options, wanted); }};
 }
 
 void add_tempo_options(CLI::App& command, TempoChoice& tempo) {
@@ -316,6 +325,13 @@ std::function<std::shared_ptr<MotionSpace>()> motion_space_loader(const MethodOp
   return [folder = nn::weights_folder(network_options(how))] {
     return std::shared_ptr<MotionSpace>(nn::load_motion_space(folder));
   };
+}
+
+SourceTools source_tools(const MethodOptions& how) {
+  SourceTools tools;
+  tools.space = motion_space_loader(how);
+  tools.lifter = [folder = nn::weights_folder(network_options(how))] { return nn::load_lifter(folder); };
+  return tools;
 }
 
 RetargetOptions retarget_options(const MethodOptions& how) {

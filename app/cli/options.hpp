@@ -56,6 +56,8 @@ nlohmann::ordered_json style_json(const StyleChoice& style);
 std::string style_rights(const StyleChoice& style);
 /// Loads what fills frames between scans, with the same weights.
 std::function<std::shared_ptr<MotionSpace>()> motion_space_loader(const MethodOptions& how);
+/// What sources are completed and lifted with, from the same weights; the extractor is the retargeter's.
+SourceTools source_tools(const MethodOptions& how);
 /// The options of the pipeline, networks apart.
 RetargetOptions retarget_options(const MethodOptions& how);
 

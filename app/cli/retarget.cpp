@@ -5,6 +5,7 @@
 #include "app/cli/job.hpp"
 #include "app/cli/options.hpp"
 #include "app/run/exports.hpp"
+#include "app/run/keypoint_source.hpp"
 #include "retarget/base/error.hpp"
 #include "retarget/base/text.hpp"
 #include "retarget/formats/file_formats.hpp"
@@ -45,6 +46,8 @@ Action declare_retarget(CLI::App& command) {
     const bool is_flat = is_flat_job(*job);
     if (job->out.empty() && job->report.empty() && job->preview.empty() && job->skeletons.empty())
       job->out = is_flat ? "out.json" : "out.glb";
+    if (!is_flat && is_keypoint_source(job->source) && job->poses.canvas)
+      job->source.canvas = printed("%dx%d", job->poses.canvas->width, job->poses.canvas->height);
     if (is_flat)
       run_flat_job(*job, *flat);
     else if (job->source.person == "all")

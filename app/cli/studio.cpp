@@ -34,15 +34,20 @@ StudioServices studio_services(const std::string& weights) {
     options.weights = weights;
     return nn::load_motion_space(nn::weights_folder(options));
   };
+  services.lifter = [weights] {
+    nn::NetworkOptions options;
+    options.weights = weights;
+    return nn::load_lifter(nn::weights_folder(options));
+  };
   services.lengths = [weights]() -> std::shared_ptr<const LengthReader> {
     nn::NetworkOptions options;
     options.weights = weights;
     return nn::load_length_reader(nn::weights_folder(options));
   };
-  services.flat_engine = [weights](const std::string& name, bool touches) {
+  services.flat_engine = [weights](const FlatEngine& wanted) {
     nn::NetworkOptions options;
     options.weights = weights;
-    return nn::load_keypoint_transfer(options, name, touches);
+    return nn::load_keypoint_transfer(options, wanted);
   };
   services.weights = [weights] {
     nn::NetworkOptions options;

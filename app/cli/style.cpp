@@ -34,8 +34,7 @@ StyledClip clip_of(const StyleOptions& options) {
   parts.extractor = parts.style = true;
   std::optional<Progress> progress;
   return styled_clip(options.source, nn::load_networks(network_options(options.how), parts),
-                     retarget_options(options.how), motion_space_loader(options.how),
-                     [&](int64_t done, int64_t of) {
+                     retarget_options(options.how), source_tools(options.how), [&](int64_t done, int64_t of) {
                        check_interrupt("after frame " + std::to_string(done));
                        if (!progress) progress.emplace(file_name(options.source.path), of);
                        progress->step(done);

@@ -60,6 +60,25 @@ void add_own(CLI::App& command, nn::PartTrainOptions& options) {
 }
 void add_own(CLI::App&, nn::DeformationTrainOptions&) {}
 void add_own(CLI::App&, nn::ProportionsTrainOptions&) {}
+void add_own(CLI::App& command, nn::Pose2dTrainOptions& options) {
+  command
+      .add_option("--links", options.links,
+                  "between people: virtual (default), ranking (the loss that it comes from) or none")
+      ->check(CLI::IsMember({"virtual", "ranking", "none"}));
+  command.add_flag("!--no-angles", options.angles, "without the loss of bones' angles");
+  command
+      .add_option("--pairs", options.pairs,
+                  "links between all points (default), bones alone, or bones and ends")
+      ->check(CLI::IsMember({"all", "bones", "ends"}));
+  command.add_option("--directions", options.directions, "that links are seen along (default: 4)")
+      ->check(CLI::Range(1, 32));
+  command.add_option("--first-direction", options.first_direction, "of them, degrees (default: 0)")
+      ->check(CLI::Range(0.0, 180.0));
+}
+void add_own(CLI::App& command, nn::LifterTrainOptions& options) {
+  command.add_option("--frames", options.frames, "frames of a sequence (default: 40)")
+      ->check(CLI::Range(2, 1000));
+}
 void add_own(CLI::App& command, nn::MotionSpaceTrainOptions& options) {
   command
       .add_option(
@@ -212,6 +231,8 @@ Action declare_train(CLI::App& command) {
   add_network<nn::StyleJudgeTrainOptions>(command, "judges of style, from a folder of clips for each",
                                           chosen);
   add_network<nn::ProportionsTrainOptions>(command, "how long a person's bones are, from a 2D pose", chosen);
+  add_network<nn::Pose2dTrainOptions>(command, "2D poses performed by others, paper 5's network", chosen);
+  add_network<nn::LifterTrainOptions>(command, "skeletons in space, from 2D poses", chosen);
   return [chosen] { return (*chosen)(); };
 }
 

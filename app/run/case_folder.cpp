@@ -217,6 +217,7 @@ Case read_case(const std::string& folder) {
   result.truth = text("truth");
   result.style = style_of(json, path);
   result.flat = flat_of(json, path);
+  result.lifted = json.contains("lifted") && json["lifted"] == true;
   if (json.contains("fps")) {
     US_CHECK(json["fps"].is_number() && json["fps"].get<double>() > 0, path,
              ": \"fps\" is not a positive number");

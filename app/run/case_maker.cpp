@@ -14,6 +14,7 @@
 #include "app/run/flat_suite.hpp"
 #include "app/run/inbetween_suite.hpp"
 #include "app/run/interrupt.hpp"
+#include "app/run/lift_suite.hpp"
 #include "app/run/report.hpp"
 #include "app/run/sparse_suite.hpp"
 #include "app/run/style_suite.hpp"
@@ -392,6 +393,7 @@ int make_suite(const SuiteOptions& options, const std::function<void(const std::
   if (is_creature_suite(options.suite) && options.data.empty()) return make_creature_suite(options, {}, done);
   if (options.suite == "style") return make_style_suite(options, done);
   if (is_flat_suite(options.suite)) return make_flat_suite(options, done);
+  if (is_lift_suite(options.suite)) return make_lift_suite(options, done);
   DataSplit split = read_split(options.data, options.split);
   if (options.suite == "inbetween" || options.suite == "predict")
     return make_inbetween_suite(options, split, done);

@@ -53,6 +53,7 @@ struct SuiteOptions {
 ///   sparse: see make_sparse_suite
 ///   style: clips of people who are to move in another manner: see make_style_suite
 ///   pose2d, pose2d-odd, pose2d-noisy, pose2d-seen: 2D poses, see make_flat_suite
+///   lifting: 2D poses that are performed in space, see make_lift_suite
 ///   creatures: robots, animals and hands made by code, with people where there is a data folder, as bodies
 ///     whose rig is to be found: see make_creature_suite. Truths hold the rig (rig_truth_file.hpp)
 ///   creatures-captured: the same as a rig of cameras would see them, scaled to a body of 1.5 m

@@ -49,7 +49,7 @@ class CompletedScans final : public Source {
   }
 
   void set_look(const std::function<Extraction(const Mesh&)>& look) override { scans_->set_look(look); }
-  void set_tools(const CompletingTools& tools) override { tools_ = tools; }
+  void set_tools(const SourceTools& tools) override { tools_ = tools; }
   std::shared_ptr<const MadeCapture> made() const override { return made_; }
   std::optional<int64_t> count() const override {
     const int64_t scans = scans_->count().value_or(0);
@@ -204,7 +204,7 @@ class CompletedScans final : public Source {
   std::unique_ptr<Source> scans_;
   SourceOptions options_;
   std::vector<MarkerFrame> markers_;
-  CompletingTools tools_;
+  SourceTools tools_;
   std::shared_ptr<const MadeCapture> made_;
   int64_t at_ = 0;  // the next frame
 };

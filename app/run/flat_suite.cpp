@@ -7,12 +7,11 @@
 #include <optional>
 
 #include "app/run/case_writer.hpp"
+#include "app/run/flat_cast.hpp"
 #include "app/run/interrupt.hpp"
 #include "app/run/report.hpp"
 #include "retarget/base/error.hpp"
 #include "retarget/base/text.hpp"
-#include "retarget/body/clips.hpp"
-#include "retarget/body/data_folder.hpp"
 #include "retarget/keypoints/keypoint_writers.hpp"
 #include "retarget/pose2d/flat_people.hpp"
 
@@ -41,52 +40,6 @@ const FlatSuite* suite_named(const std::string& name) {
   return found == kSuites.end() ? nullptr : &*found;
 }
 
-/// People and clips to choose from.
-class Cast {
- public:
-  explicit Cast(const SuiteOptions& options)
-      : split_(read_split(options.data, options.split)),
-        body_(read_smpl_body(options.body.empty() ? split_.body : options.body)),
-        head_(head_vertices(body_.shaped({}).vertices, body_.shaped({}).joints)) {
-    US_CHECK(split_.betas.size() > 1, options.data, ": the split ", options.split,
-             " has fewer than two people");
-    for (const std::string& folder : split_.motion_folders)
-      for (Clip& clip : read_clips(folder)) clips_.push_back(std::move(clip));
-    float rate = 1;  // frames of the fastest clip a second
-    for (const Clip& clip : clips_) rate = std::max(rate, static_cast<float>(clip.motion.fps));
-    const auto shortest = static_cast<int>(rate * static_cast<float>(options.frames) / kRate),
-               track = static_cast<int>(rate * kTrackSeconds);
-    runs_ = good_runs(clips_, std::max(shortest, 1), std::max(shortest, track));
-    US_CHECK(runs_.size() > 1, options.data, ": the split ", options.split, " has fewer than two long clips");
-  }
-
-  int people() const { return static_cast<int>(split_.betas.size()); }
-  FlatPerson person(int row) const {
-    const ShapedBody shaped = body_.shaped(split_.betas[static_cast<size_t>(row)]);
-    return understudy::flat_person(shaped.vertices, shaped.joints, head_);
-  }
-  /// `count` poses of a run, `rate` a second.
-  std::vector<Pose> poses(int run, int count, float rate) const {
-    const ClipRun& from = runs_[static_cast<size_t>(run)];
-    const Motion& motion = clips_[static_cast<size_t>(from.clip)].motion;
-    std::vector<Pose> poses;
-    for (int i = 0; i < count; ++i) {
-      const int at =
-          static_cast<int>(std::lround(static_cast<float>(i) * static_cast<float>(motion.fps) / rate));
-      poses.push_back(motion.poses[static_cast<size_t>(from.first + std::min(at, from.count - 1))]);
-    }
-    return poses;
-  }
-  int runs() const { return static_cast<int>(runs_.size()); }
-
- private:
-  DataSplit split_;
-  Body body_;
-  HeadVertices head_;
-  std::vector<Clip> clips_;
-  std::vector<ClipRun> runs_;
-};
-
 /// The same person seen over some frames by one camera.
 struct Shot {
   KeypointReading seen;
@@ -114,12 +67,6 @@ Shot shot_of(const FlatPerson& person, const std::vector<Pose>& poses, const Pin
   return shot;
 }
 
-Vec3 middle_of(const std::vector<Pose>& poses) {
-  Vec3 sum = Vec3::Zero();
-  for (const Pose& pose : poses) sum += pose.root;
-  return sum / static_cast<float>(poses.size());
-}
-
 Json lengths_json(const BoneLengths& lengths) {
   Json json = Json::array();
   for (const float length : lengths) json.push_back(length);
@@ -130,7 +77,7 @@ Json lengths_json(const BoneLengths& lengths) {
 class FlatCaseMaker {
  public:
   FlatCaseMaker(const SuiteOptions& options, const FlatSuite& suite)
-      : options_(options), suite_(suite), cast_(options) {}
+      : options_(options), suite_(suite), cast_(options, kTrackSeconds) {}
 
   int make(const std::function<void(const std::string&)>& done) {
     const int pairs = options_.cases > 0 ? options_.cases : kPairs;
@@ -197,7 +144,7 @@ class FlatCaseMaker {
 
   const SuiteOptions& options_;
   const FlatSuite& suite_;
-  Cast cast_;
+  FlatCast cast_;
   Rng rng_{0};
   Shot source_, target_, truth_;
 };

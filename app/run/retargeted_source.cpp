@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "app/run/keypoint_source.hpp"
 #include "retarget/base/clock.hpp"
 #include "retarget/base/error.hpp"
 #include "retarget/base/log.hpp"
@@ -23,18 +24,19 @@ void look_with(Retargeter& retargeter, Source& source) {
 }
 
 RetargetedSource::RetargetedSource(Source& source, Retargeter& retargeter, const SourceOptions& options,
-                                   const std::function<std::shared_ptr<MotionSpace>()>& motion_space)
+                                   SourceTools tools)
     : source_(source),
       retargeter_(retargeter),
       name_(options.path),
       edits_(options.complete > 0 ? ScanEdits() : options.edits),
-      cut_(retargeter.extractor(), options) {
+      cut_(retargeter.extractor(), is_keypoint_source(options) ? without_people(options) : options) {
   retargeter_.restart();
   if (retargeter_.lag_s() > 0)
     log::info(name_ + printed(": each frame comes %.1f s later, for its style",
                               static_cast<double>(retargeter_.lag_s())));
   look_with(retargeter_, source_);
-  source_.set_tools({[this] { return retargeter_.extractor(); }, motion_space, {}});
+  tools.extractor = [this] { return retargeter_.extractor(); };
+  source_.set_tools(tools);
 }
 
 /// Reads a frame and lets it be styled. False at the end.

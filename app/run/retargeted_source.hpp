@@ -34,9 +34,9 @@ class RetargetedSource {
   /// `retargeter` starts anew, and looks at the source's first frame (look_with). Both must outlive this.
   /// `options` are those that the source was opened with: its `edits` are applied to each scan first, then
   /// the `person` is cut out.
-  /// `motion_space` fills sparse scans that are completed; it may be empty.
+  /// `tools` are the source's; the extractor is the retargeter's.
   RetargetedSource(Source& source, Retargeter& retargeter, const SourceOptions& options,
-                   const std::function<std::shared_ptr<MotionSpace>()>& motion_space = {});
+                   SourceTools tools = {});
   /// None at the end. Warns once of each limb that is not seen. known: the source's joints, where they are
   /// not to be extracted.
   std::optional<RetargetedFrame> next(const std::optional<Joints>& known = {});

@@ -6,8 +6,10 @@
 #include <filesystem>
 #include <utility>
 
+#include "app/run/animated_source.hpp"
 #include "app/run/completed_source.hpp"
 #include "app/run/interrupt.hpp"
+#include "app/run/keypoint_source.hpp"
 #include "retarget/base/error.hpp"
 #include "retarget/base/index.hpp"
 #include "retarget/base/log.hpp"
@@ -173,28 +175,6 @@ Extraction moved(Extraction skeleton, const Eigen::Matrix4d& by) {
   return skeleton;
 }
 
-/// Frames of an animation: it counts them.
-class AnimatedSource : public Source {
- public:
-  AnimatedSource(double fps, int64_t frames) : Source(fps), count_(frames) {}
-  std::optional<SourceFrame> next() final {
-    if (at_ >= count_) return std::nullopt;
-    SourceFrame frame = frame_at(at_);
-    frame.number = at_++;
-    return frame;
-  }
-  void seek(int64_t frame) final {
-    US_CHECK(frame >= 0 && frame < count_, "there is no frame ", frame, " in a motion of ", count_);
-    at_ = frame;
-  }
-  std::optional<int64_t> count() const final { return count_; }
-
- private:
-  virtual SourceFrame frame_at(int64_t frame) const = 0;
-
-  int64_t count_, at_ = 0;
-};
-
 /// An SMPL-format body that performs an AMASS-format motion.
 class PerformingBody final : public AnimatedSource {
  public:
@@ -219,7 +199,7 @@ class PerformingBody final : public AnimatedSource {
   }
 
  private:
-  SourceFrame frame_at(int64_t frame) const override {
+  SourceFrame frame_at(int64_t frame) override {
     SourceFrame out;
     out.mesh = posed(frame);
     decision_.apply(out.mesh);
@@ -277,7 +257,7 @@ class MovingSkeleton final : public AnimatedSource {
   }
 
  private:
-  SourceFrame frame_at(int64_t frame) const override {
+  SourceFrame frame_at(int64_t frame) override {
     SourceFrame out;
     out.mesh = motion_.surface(frame);
     out.skeleton = motion_.skeleton(frame);
@@ -286,31 +266,6 @@ class MovingSkeleton final : public AnimatedSource {
 
   SkeletalMotion motion_;
 };
-
-/// An octahedron from each joint to each of its children: something to look at.
-Mesh bone_shapes(const Joints& joints) {
-  constexpr float kThickness = 0.09f, kRingAt = 0.15f;  // of a bone's length
-  constexpr int kCorners = 6, kFaces = 8;
-  Mesh mesh;
-  mesh.vertices.resize((kJointCount - 1) * kCorners, 3);
-  mesh.faces.resize((kJointCount - 1) * kFaces, 3);
-  for (int j = 1; j < kJointCount; ++j) {
-    const Vec3 from = joints.row(kParents[j]).transpose(), to = joints.row(j).transpose(), along = to - from;
-    const Vec3 side = along.unitOrthogonal() * kThickness * along.norm();
-    const Vec3 other = along.stableNormalized().cross(side), ring = from + kRingAt * along;
-    const int first = (j - 1) * kCorners;
-    int row = first;
-    for (const Vec3& v :
-         {from, to, Vec3(ring + side), Vec3(ring + other), Vec3(ring - side), Vec3(ring - other)})
-      mesh.vertices.row(row++) = v.transpose();
-    for (int i = 0; i < 4; ++i) {
-      const int a = first + 2 + i, b = first + 2 + (i + 1) % 4, face = (j - 1) * kFaces + 2 * i;
-      mesh.faces.row(face) << first, b, a;
-      mesh.faces.row(face + 1) << first + 1, a, b;
-    }
-  }
-  return mesh;
-}
 
 /// What lies between skeletal motions: made, all of it.
 class BlendedSource final : public AnimatedSource {
@@ -330,7 +285,7 @@ class BlendedSource final : public AnimatedSource {
   }
 
  private:
-  SourceFrame frame_at(int64_t frame) const override {
+  SourceFrame frame_at(int64_t frame) override {
     const PosedSkeleton posed = forward_kinematics(blend_.rest, blend_.motion.poses[frame]);
     SourceFrame out;
     out.mesh = bone_shapes(posed.joints);
@@ -361,7 +316,7 @@ class ScannedCharacter final : public AnimatedSource {
   }
 
  private:
-  SourceFrame frame_at(int64_t frame) const override {
+  SourceFrame frame_at(int64_t frame) override {
     constexpr int kPoints = 8000;
     Rng rng(static_cast<uint64_t>(frame) + 1);
     SourceFrame out;
@@ -526,6 +481,8 @@ int person_number(const std::string& person) {
 }
 
 void check_source_options(const SourceOptions& options) {
+  if (is_keypoint_source(options)) return check_keypoint_options(options);
+  check_no_picture(options);
   person_number(options.person);
   if (options.blend) return check_blend_options(options);
   if (!options.motion.empty()) return check_body_options(options);
@@ -537,6 +494,7 @@ void check_source_options(const SourceOptions& options) {
 
 std::unique_ptr<Source> open_source(const SourceOptions& options, MotionBlender* blender) {
   check_source_options(options);
+  if (is_keypoint_source(options)) return open_keypoint_source(options);
   if (options.blend) {
     MotionBlender plain;
     return std::make_unique<BlendedSource>((blender ? blender : &plain)->make(*options.blend, options.fps),

@@ -1,5 +1,6 @@
 // Where the frames come from: scans on disk, an SMPL-format body that performs an AMASS-format motion, a
-// skeleton that moves (BVH, AMASS-format motion, animated FBX, DAE, GLB, glTF), or a blend of such motions.
+// skeleton that moves (BVH, AMASS-format motion, animated FBX, DAE, GLB, glTF), a blend of such motions, or 2D
+// poses that are lifted.
 #pragma once
 
 #include <functional>
@@ -16,6 +17,7 @@
 #include "retarget/formats/import.hpp"
 #include "retarget/formats/scan_source.hpp"
 #include "retarget/pipeline/interfaces.hpp"
+#include "retarget/pipeline/lifter.hpp"
 #include "retarget/pipeline/motion_space.hpp"
 #include "retarget/scene/person_edits.hpp"
 #include "retarget/skeleton/skeleton.hpp"
@@ -45,6 +47,11 @@ struct SourceOptions {
       made{};                          ///< what `complete` made of the same scans before; null: nothing
   std::vector<PersonEdit> people{};    ///< who is who, where it was not seen rightly
   std::optional<BlendRecipe> blend{};  ///< made of several skeletal motions; none: no blend
+  // Of 2D poses:
+  std::string layout{};  ///< the order of their points; empty: as names or their count tell
+  std::string canvas{};  ///< "1280x720"; empty: as the file or a picture beside it tells
+  double stature = static_cast<double>(kUsualStature_m);  ///< of the person, metres
+  double fov = static_cast<double>(kUsualFov_deg);        ///< vertical, of the camera, degrees
   ScanEdits
       edits{};  ///< of each frame, before anybody is looked for; documents have theirs beside the source
 };
@@ -65,6 +72,10 @@ FieldsOf<S, SourceOptions> fields(V& visit, S& source) {
   visit("person", source.person);
   visit("people", source.people);
   visit("blend", source.blend);
+  visit("layout", source.layout);
+  visit("canvas", source.canvas);
+  visit("stature", source.stature, Within<double>{0.3, 3});
+  visit("fov", source.fov, Within<double>{1, 170});
 }
 /// A source that is made by this recipe.
 SourceOptions blended_source(BlendRecipe blend);
@@ -89,10 +100,12 @@ struct SourceClip {
   double seconds = 0;
 };
 
-/// What sparse scans are completed with.
-struct CompletingTools {
+/// What frames are made with that are no files: of sparse scans that are completed, of 2D poses that are
+/// lifted. Each is called at most once, and may be empty where no such source is read.
+struct SourceTools {
   std::function<std::shared_ptr<SkeletonExtractor>()> extractor;
   std::function<std::shared_ptr<MotionSpace>()> space;  ///< fills between scans; empty: smooth curves do
+  std::function<std::unique_ptr<Lifter>()> lifter;      ///< of 2D poses; empty: they cannot be lifted
   std::function<void(float)> progress;  ///< told the share that is done, 0..1; may throw; may be empty
 };
 
@@ -114,8 +127,9 @@ class Source {
   /// without feet: its height is not theirs. Called on the thread of next(), at most once; what throws sees
   /// nobody. Motions of bodies and skeletons do not ask.
   virtual void set_look(const std::function<Extraction(const Mesh&)>& /*look*/) {}
-  /// Called before next(), whose thread then calls them. Sources that are not completed do not.
-  virtual void set_tools(const CompletingTools& /*tools*/) {}
+  /// Called before next(), whose thread then calls them. Sources that are neither completed nor lifted do
+  /// not.
+  virtual void set_tools(const SourceTools& /*tools*/) {}
   /// What was completed, for SourceOptions::made; null before it is and of other sources.
   virtual std::shared_ptr<const MadeCapture> made() const { return nullptr; }
   /// The options by which the same is decided without a look; none: those that it was opened with.

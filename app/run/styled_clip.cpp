@@ -28,11 +28,10 @@ std::vector<Rotations> StyledClip::local() const {
 }
 
 StyledClip styled_clip(const SourceOptions& options, const Networks& networks, const RetargetOptions& how,
-                       const std::function<std::shared_ptr<MotionSpace>()>& motion_space,
-                       const ClipStep& step) {
+                       const SourceTools& tools, const ClipStep& step) {
   Retargeter retargeter(networks, how);
   const auto source = open_source(options);
-  RetargetedSource retargeted(*source, retargeter, options, motion_space);
+  RetargetedSource retargeted(*source, retargeter, options, tools);
   StyledClip clip;
   clip.fps = source->fps();
   CopyTransfer bones;

@@ -27,8 +27,7 @@ using ClipStep = std::function<void(int64_t done, int64_t of)>;
 /// Goes through the source once, in the style of the networks where they have one. Frames that cannot be used
 /// repeat the one before. Throws Error where none can.
 StyledClip styled_clip(const SourceOptions& source, const Networks& networks, const RetargetOptions& how,
-                       const std::function<std::shared_ptr<MotionSpace>()>& motion_space = {},
-                       const ClipStep& step = {});
+                       const SourceTools& tools = {}, const ClipStep& step = {});
 
 /// Its poses at this tempo. legs_m: of who is to perform it, for the tempo "body"; 0: not told, an Error
 /// there.

@@ -13,7 +13,7 @@ namespace understudy::app {
 
 struct Studio::Background {
   Background(const StudioServices& services, std::shared_ptr<MotionBlender> blender)
-      : engine(services.networks, std::move(blender), services.motion_space),
+      : engine(services.networks, std::move(blender), {{}, services.motion_space, services.lifter, {}}),
         refiner(services.motion_space) {}
 
   /// The inputs from which a take in the session was made.

@@ -99,10 +99,10 @@ Plan plan_of(const Document& document, const std::vector<int64_t>& take_ids) {
 }
 
 struct Engine::Impl {
-  Impl(NetworksOf source_of_networks, std::shared_ptr<MotionBlender> of_blends, SpaceOf source_of_space)
+  Impl(NetworksOf source_of_networks, std::shared_ptr<MotionBlender> of_blends, SourceTools tools_of_sources)
       : networks_of(std::move(source_of_networks)),
         blender(std::move(of_blends)),
-        motion_space(std::move(source_of_space)) {}
+        tools(std::move(tools_of_sources)) {}
 
   // Shared with the UI thread, under the worker's mutex.
   std::optional<Plan> next_plan;
@@ -116,7 +116,7 @@ struct Engine::Impl {
   int64_t own_epoch = 0;  // of the plan at work
   NetworksOf networks_of;
   std::shared_ptr<MotionBlender> blender;
-  SpaceOf motion_space;
+  SourceTools tools;
   Plan plan;
   std::string source_is, skeleton_is;
   std::unique_ptr<Source> source;
@@ -350,7 +350,7 @@ void Engine::Impl::open() {
     if (options.complete > 0) options.edits = plan.scan_edits;
     source = open_source(options, blender.get());
     source->set_look([this](const Mesh& scan) { return observer_of(shown()).look(scan); });
-    source->set_tools({[this] { return extractor_of(shown()); }, motion_space,
+    source->set_tools({[this] { return extractor_of(shown()); }, tools.space, tools.lifter,
                        [this](float share) {
                          emit(SourceCompleting{share});
                          const auto held = worker.lock();
@@ -646,8 +646,8 @@ void Engine::Impl::perform(TakeWork& take) {
   emit(std::move(event));
 }
 
-Engine::Engine(NetworksOf networks, std::shared_ptr<MotionBlender> blender, SpaceOf motion_space)
-    : impl_(std::make_unique<Impl>(std::move(networks), std::move(blender), std::move(motion_space))) {}
+Engine::Engine(NetworksOf networks, std::shared_ptr<MotionBlender> blender, SourceTools tools)
+    : impl_(std::make_unique<Impl>(std::move(networks), std::move(blender), std::move(tools))) {}
 
 Engine::~Engine() {
   const auto held = impl_->worker.lock();

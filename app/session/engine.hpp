@@ -118,11 +118,11 @@ class Engine {
  public:
   /// The parts asked for, of the networks of a method.
   using NetworksOf = std::function<Networks(const Method&, const NetworkParts&)>;
-  using SpaceOf = std::function<std::shared_ptr<MotionSpace>()>;
-  /// blender: makes sources that are blends; null: they go straight from pose to pose. motion_space: what
-  /// fills sparse scans that are completed; called on the engine's thread; may be empty.
+  /// blender: makes sources that are blends; null: they go straight from pose to pose. tools: what sparse
+  /// scans are completed and 2D poses lifted with; called on the engine's thread; the extractor is the
+  /// engine's, and so is who is told the progress.
   explicit Engine(NetworksOf networks, std::shared_ptr<MotionBlender> blender = nullptr,
-                  SpaceOf motion_space = {});
+                  SourceTools tools = {});
   ~Engine();  ///< finishes the current frame, or breaks the completing of scans off, then stops
 
   /// Makes this plan from now on. Never waits.

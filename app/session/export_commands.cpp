@@ -3,16 +3,37 @@
 #include <memory>
 
 #include "app/run/export_presets.hpp"
+#include "app/run/flat_performance.hpp"
 #include "app/session/command_sets.hpp"
 #include "app/session/take_export.hpp"
 #include "retarget/base/error.hpp"
+#include "retarget/base/index.hpp"
 #include "retarget/base/text.hpp"
 
 namespace understudy::app {
 namespace fs = std::filesystem;
 namespace {
 
+/// Of a flat take: the path's suffix says what is written.
+void export_flat(Call& c) {
+  const std::string path = c.path(1);
+  const ExportChoice choice = export_choice(".json", {c.arguments.begin() + 2, c.arguments.end()});
+  US_CHECK(choice.takes.empty(), "a file of 2D poses holds one take");
+  const auto poses =
+      std::make_shared<const KeypointReading>(exported_poses(c.session, c.take_number(), choice.poses.count));
+  check_not_read(path, files_read_by(c.document));
+  c.studio.jobs().start(
+      "Exporting " + file_name(path),
+      [path, poses, choice](JobControl&) { write_flat(path, *poses, choice.poses); },
+      [&studio = c.studio, path, count = ssize(poses->frames)] {
+        studio.notify("Exported " + file_name(path) + ": " + grouped(count) + " frames", false,
+                      showing(path));
+      });
+  remember_folder(c.studio, path);
+}
+
 void run_export(Call& c) {
+  if (c.take().flat) return export_flat(c);
   std::vector<size_t> takes = {c.take_number()};
   const std::string path = c.path(1);
   const ExportChoice choice = export_choice(path, {c.arguments.begin() + 2, c.arguments.end()});
@@ -109,8 +130,10 @@ void add_export_commands(Commands& commands) {
       {"export.run", "Export animation",
        "TAKE PATH [format=NAME] [preset=" + names_of_presets() +
            "] [bones=own|22] [influences=4|8] [morphs=COUNT] [reduce=MM] "
-           "[in_place=on] [root_motion=on] [t_pose=on] [keep_clips=on] [camera=WORDS|FILE] "
+           "[in_place=on] [root_motion=on] [t_pose=on] [keep_clips=on] [camera=WORDS|FILE|view] "
            "[canvas=WIDTHxHEIGHT] [rate=NUMBER] [count=COUNT|4n+1] [depth=on] [normals=on] [mask=on] "
+           "[points=openpose18|body25] [stick_width=PIXELS] [hide_limbs=on] [whole_face=on] "
+           "[pose_file=controlnet|openpose|none] "
            "[take=NAME ...: clips of the "
            "same character, or others who perform at once]"},
       run_export);

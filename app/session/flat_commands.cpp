@@ -42,6 +42,13 @@ std::optional<std::string> flat_target_file(const std::string& path) {
   return only_if(may_be && (is_proportions_file(path) || looks_like_keypoints(path)), path);
 }
 
+void set_flat(FlatTake& take, const std::string& setting, const ArgumentReader& value) {
+  ArgumentReader({setting}).one_of(0, "setting", {"engine", "place", "touches"});
+  if (setting == "engine") take.engine = value.one_of(0, "engine", {"limbs"});
+  if (setting == "place") take.place = value.choice<FlatPlace>(0, "place", kFlatPlaceNames);
+  if (setting == "touches") take.touches = value.on(0);
+}
+
 void exchange_flat_sides(Call& c) {
   US_CHECK(c.document.flat, "the source is no file of 2D poses");
   auto& edits = c.document.flat->edits;
@@ -179,9 +186,9 @@ void add_proportions(Commands& commands) {
 
 void add_manner(Commands& commands) {
   commands.add_edit({"flat.place", "Placement", "TAKE reference|source: where the result stands"},
-                    [](Call& c) { flat_of(c).place = c.choice<FlatPlace>(1, "place", kFlatPlaceNames); });
+                    [](Call& c) { set_flat(flat_of(c), "place", ArgumentReader({c.word(1, "place")})); });
   commands.add_edit({"flat.touches", "Hands keep touching", "TAKE on|off"},
-                    [](Call& c) { flat_of(c).touches = c.on(1); });
+                    [](Call& c) { set_flat(flat_of(c), "touches", ArgumentReader({c.word(1, "switch")})); });
   commands.add_edit({"flat.ahead", "Read proportions ahead", "on|off: off the whole file, for them alone"},
                     [](Call& c) { source_of(c).ahead = c.on(0); });
   commands.add_slider({"flat.smoothing", "Smoothing of 2D poses", "FACTOR: 0 to 4, 1 as tuned"}, [](Call& c) {

@@ -25,6 +25,7 @@ struct StudioServices {
   std::function<std::shared_ptr<MotionSpace>()> motion_space;  ///< what fills gaps; called off the UI thread
   /// what codes movements that are blended; called off the UI thread, once
   std::function<std::shared_ptr<MotionCoder>()> motion_coder;
+  std::function<std::unique_ptr<Lifter>()> lifter;  ///< what lifts 2D poses; called off the UI thread
   /// what reads proportions off 2D poses; called off the UI thread, once
   std::function<std::shared_ptr<const LengthReader>()> lengths;
   FlatEngineMaker flat_engine;           ///< as FlatTools have it; called off the UI thread

@@ -200,7 +200,10 @@ void compare(Call& c) {
     const size_t equals = setting.find('=');
     US_CHECK(equals != std::string::npos, "a setting is written as engine=paper, not ", setting);
     const std::string key = present_name(setting.substr(0, equals)), value = setting.substr(equals + 1);
-    set_method(other.method, key, value);
+    if (other.flat)
+      set_flat(*other.flat, key, ArgumentReader({value}));
+    else
+      set_method(other.method, key, value);
     const std::string shown = key == "engine" ? "transfer" : key;  // as the panels call it
     other.name.append(i == 1 ? " (" : ", ").append(shown).append(" ").append(value);
   }

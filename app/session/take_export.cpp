@@ -7,6 +7,7 @@
 
 #include "app/run/export_presets.hpp"
 #include "app/session/command_sets.hpp"
+#include "app/session/follow.hpp"
 #include "retarget/base/error.hpp"
 #include "retarget/base/text.hpp"
 
@@ -15,6 +16,23 @@ namespace fs = std::filesystem;
 namespace {
 
 /// Whether it is one of pose pictures.
+bool set_drawing_option(PoseChoice& poses, const std::string& key, const std::string& value) {
+  const ArgumentReader words({value});
+  if (key == "points")
+    poses.drawing.layout = words.choice<render::PoseLayout>(0, "points", render::kPoseLayoutNames);
+  else if (key == "stick_width")
+    poses.drawing.half_width = words.clamped(0, "stick width", 0.f, 200.f);
+  else if (key == "hide_limbs")
+    poses.hides_limbs = words.on(0);
+  else if (key == "whole_face")
+    poses.hides_face = !words.on(0);
+  else if (key == "pose_file")
+    poses.file = words.choice<PoseFile>(0, "file of points", kPoseFileNames);
+  else
+    return false;
+  return true;
+}
+
 bool set_pose_option(PoseChoice& poses, const std::string& key, const std::string& value) {
   const ArgumentReader words({value});
   if (key == "camera")
@@ -32,7 +50,7 @@ bool set_pose_option(PoseChoice& poses, const std::string& key, const std::strin
   else if (key == "mask")
     poses.mask = words.on(0);
   else
-    return false;
+    return set_drawing_option(poses, key, value);
   return true;
 }
 
@@ -61,6 +79,8 @@ void set_option(ExportChoice& out, const std::string& key, const std::string& va
     out.file.keep_clips = words.on(0);
   else if (key == "take")
     out.takes.push_back(value);
+  else if (key == "camera" && value == "view")
+    out.pane_camera = true;
   else if (!set_pose_option(out.poses, key, value))
     throw Error("there is no export option '" + key + "'");
 }
@@ -103,6 +123,18 @@ bool are_one_body(const Take& a, const Take& b) {
          a.method.offsets == b.method.offsets;
 }
 
+/// As the view of a take is seen in the frame shown; it stays there.
+PictureCamera camera_of_view(const Session& session, size_t take) {
+  const int pane = static_cast<int>(take) + 1;
+  const CameraState state = camera_of(session.view, pane);
+  PictureCamera camera;
+  camera.yaw_deg = state.yaw * 180 / kPi, camera.pitch_deg = state.pitch * 180 / kPi;
+  camera.distance_m = state.distance, camera.fov_deg = state.fov * 180 / kPi;
+  camera.target = state.target + follow_offset(session, pane, std::max(0, shown_frame(session)));
+  camera.orthographic = state.orthographic;
+  return camera;
+}
+
 /// Takes of one body.
 ExportInput input_of(const Session& session, const std::vector<size_t>& takes, const ExportChoice& choice) {
   const Take& take = session.document.takes[takes[0]];
@@ -119,6 +151,7 @@ ExportInput input_of(const Session& session, const std::vector<size_t>& takes, c
     rights.push_back(session.takes[k].rights);
   }
   out.body = {state.character, state.deformer, choice.file, choice.poses};
+  if (choice.pane_camera) out.body.poses.camera = camera_of_view(session, takes[0]);
   out.body.file.rights = joined_once(rights, "; ");
   const bool own = on_their_rig(take.target, *state.character);
   US_CHECK(own || !choice.own_bones.value_or(false), take.name, ": does not perform on bones of its own");
@@ -242,6 +275,29 @@ std::vector<ExportInput> export_inputs(const Session& session, const std::vector
     inputs.push_back(
         input_of(session, of, of_people.size() > 1 ? choice_for(session, of[0], choice) : choice));
   return inputs;
+}
+
+KeypointReading exported_poses(const Session& session, size_t take, const PictureCount& count) {
+  const Take& of = session.document.takes.at(take);
+  const TakeState& state = session.takes.at(take);
+  US_CHECK(state.problem.empty(), of.name, ": ", state.problem);
+  US_CHECK(state.flat && !state.flat->poses.empty(), of.name, ": has no frames to export yet");
+  KeypointReading made = state.flat->made;
+  const int64_t all = ssize(made.frames);
+  const auto& trim = of.pose_edits.trim;
+  const int64_t first = trim ? std::min<int64_t>(trim->first, all - 1) : 0;
+  int64_t length = (trim ? std::min<int64_t>(trim->last + 1, all) : all) - first;
+  if (count.count > 0) length = std::min<int64_t>(length, count.count);
+  if (count.is_4n_plus_1) length = (length - 1) / 4 * 4 + 1;
+  made.frames = {made.frames.begin() + first, made.frames.begin() + first + length};
+  for (KeypointTrack& track : made.tracks) {
+    std::vector<TrackedPose> kept;
+    for (TrackedPose& pose : track.poses)
+      if (pose.frame >= first && pose.frame < first + length)
+        pose.frame -= first, kept.push_back(std::move(pose));
+    track.poses = std::move(kept);
+  }
+  return made;
 }
 
 std::string safe_file_name(const std::string& name) {

@@ -19,12 +19,14 @@ struct ExportChoice {
   std::optional<bool> own_bones;
   std::vector<std::string> takes;  ///< more takes, by name or number from 0
   PoseChoice poses;                ///< of pose pictures
+  bool pane_camera = false;        ///< they are seen as the take's view is seen now
 };
 
 /// key=value words, of which a later one counts: format=NAME, preset=NAME, bones=own|22, influences=4|8,
 /// morphs=COUNT, reduce=MM, in_place=on|off, root_motion=on|off, t_pose=on|off, keep_clips=on|off, of pose
 /// pictures camera=WORDS, canvas=WxH, rate=NUMBER, count=COUNT|4n+1, depth=on|off, normals=on|off,
-/// mask=on|off, and any number of take=NAME for more clips; without a format the path's suffix decides.
+/// mask=on|off, points=openpose18|body25, stick_width=PIXELS, hide_limbs=on|off, whole_face=on|off,
+/// pose_file=controlnet|openpose|none (camera=view: as the take is seen now), and any number of take=NAME for more clips; without a format the path's suffix decides.
 /// Throws Error for any other.
 ExportChoice export_choice(const std::string& path, const std::vector<std::string>& words);
 
@@ -43,6 +45,10 @@ std::vector<size_t> takes_of_one_file(const Document& document, size_t take);
 /// Error when nothing has been performed yet, or the takes cannot be in one file.
 std::vector<ExportInput> export_inputs(const Session& session, const std::vector<size_t>& takes,
                                        const ExportChoice& choice);
+
+/// Of a flat take: its poses without what trim leaves out, as many as the count says. Throws Error while there are
+/// none.
+KeypointReading exported_poses(const Session& session, size_t take, const PictureCount& count);
 
 /// The name of a file or folder for something of this name, such that any file system takes it.
 std::string safe_file_name(const std::string& name);

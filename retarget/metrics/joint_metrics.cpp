@@ -86,6 +86,21 @@ JointSequence aligned_joints(const JointSequence& predicted, const JointSequence
   return aligned;
 }
 
+JointSequence scaled_joints(const JointSequence& predicted, const JointSequence& truth) {
+  check_same_length(predicted.size(), truth.size());
+  const auto hips = [](const Joints& joints) {
+    return Eigen::RowVector3f((joints.row(LeftHip) + joints.row(RightHip)) / 2);
+  };
+  JointSequence scaled(truth.size());
+  for (size_t t = 0; t < truth.size(); ++t) {
+    const Joints p = predicted[t].rowwise() - hips(predicted[t]), q = truth[t].rowwise() - hips(truth[t]);
+    const double over = p.cast<double>().squaredNorm();
+    const double scale = over > 0 ? p.cast<double>().cwiseProduct(q.cast<double>()).sum() / over : 1;
+    scaled[t] = (static_cast<float>(scale) * p).rowwise() + hips(truth[t]);
+  }
+  return scaled;
+}
+
 JointSequence resampled(const JointSequence& joints, double from_fps, double to_fps) {
   US_CHECK(from_fps > 0 && to_fps > 0, "frame rates must be positive, not ", from_fps, " and ", to_fps);
   if (joints.size() < 2 || from_fps == to_fps) return joints;

@@ -24,6 +24,8 @@ double visibility_right(const std::vector<SeenJoints>& predicted, const std::vec
 /// Each frame's prediction after the best similarity (rotation, translation, scale) onto the truth of that
 /// frame.
 JointSequence aligned_joints(const JointSequence& predicted, const JointSequence& truth);
+/// Each frame's prediction moved onto the truth by the middle of its hips, then scaled about it as fits best.
+JointSequence scaled_joints(const JointSequence& predicted, const JointSequence& truth);
 /// Mean over frames and joints of |D2 p - D2 q|, D2 the second difference at 30 frames/s; metres per frame
 /// squared. Sequences at another rate are resampled linearly first. NaN with fewer than 3 frames at 30
 /// frames/s.

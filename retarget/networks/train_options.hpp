@@ -88,9 +88,26 @@ struct ProportionsTrainOptions : TrainOptions {
   static constexpr const char* kNetwork = "proportions";
 };
 
+/// Zheng et al. (2021); what is not the paper's own choice is for tables 2 to 4.
+struct Pose2dTrainOptions : TrainOptions {
+  static constexpr const char* kNetwork = "pose2d";
+  std::string links = "virtual";  ///< "virtual" (L_VL), "ranking", or "none"
+  bool angles = true;             ///< L_AL
+  std::string pairs = "all";      ///< between which points links are: "all", "bones", "ends" (bones and ends)
+  int directions = 4;             ///< that links are seen along, evenly over half a turn
+  double first_direction = 0;     ///< degrees
+};
+
+/// Where there is neither minutes nor samples, as many samples as the shipped weights saw.
+struct LifterTrainOptions : TrainOptions {
+  static constexpr const char* kNetwork = "lifter";
+  int frames = 40;  ///< of a sequence
+};
+
 using AnyTrainOptions =
     std::variant<SkeletonTrainOptions, PartTrainOptions, MotionTrainOptions, DeformationTrainOptions,
-                 MotionSpaceTrainOptions, StyleTrainOptions, StyleJudgeTrainOptions, ProportionsTrainOptions>;
+                 MotionSpaceTrainOptions, StyleTrainOptions, StyleJudgeTrainOptions, ProportionsTrainOptions,
+                 Pose2dTrainOptions, LifterTrainOptions>;
 
 /// Trains until the minutes or samples are used up, going on from the checkpoint where there is one. 0 when
 /// it came to the end, 1 when it was cancelled. Throws Error.

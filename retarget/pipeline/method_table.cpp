@@ -35,7 +35,10 @@ const MethodChoices& flat_engines() {
   static const MethodChoices all = {
       {"limbs", "Limbs", "rebuilt limbs",
        "rebuilds 2D poses from the mid-hip outwards, each bone as much longer as the other person's is",
-       nullptr}};
+       nullptr},
+      {"lift", "Lift", "lifted and seen again",
+       "lifts 2D poses into space, performs them on the other person's bones and looks at them again",
+       "lifter.weights"}};
   return all;
 }
 

@@ -1,5 +1,6 @@
 #include "retarget/pose2d/limb_transfer.hpp"
 
+#include "retarget/pose2d/ride_along.hpp"
 #include "retarget/pose2d/touches.hpp"
 
 namespace understudy {
@@ -17,21 +18,6 @@ class Rebuilt {
     if (!source_.has(point) || !pose_.has(anchor)) return;
     pose_.set(point, pose_.at(anchor) + ratio * (source_.at(point) - source_.at(anchor)),
               source_.confidence(point));
-  }
-  /// The same of hands and face.
-  void put_all(const FlatPoints& from, FlatPoints FlatPose::*to, int anchor, float ratio) {
-    FlatPoints& points = pose_.*to;
-    points = from;
-    if (from.rows() == 0) return;
-    if (!pose_.has(anchor)) {
-      points.setZero();
-      return;
-    }
-    for (Eigen::Index i = 0; i < from.rows(); ++i) {
-      if (from(i, 2) <= 0) continue;
-      const Vec2 way = from.row(i).head<2>().transpose() - source_.at(anchor);
-      points.row(i).head<2>() = (pose_.at(anchor) + ratio * way).transpose();
-    }
   }
 
  private:
@@ -99,23 +85,8 @@ FlatPose LimbTransfer::transfer(const FlatPose& seen, const Proportions& from, c
   const BoneLengths ratio = to.length / from.length.max(1e-6f);
   Rebuilt rebuilt(source);
   put_bones(source, ratio, rebuilt);
-
-  const float head = ratio[flat_bone::Head];
-  const int middle = source.has(body25::Nose) ? body25::Nose : body25::Neck;
-  for (const int point : {body25::RightEye, body25::LeftEye, body25::RightEar, body25::LeftEar})
-    rebuilt.put(point, middle, head);
-  rebuilt.put_all(source.face, &FlatPose::face, middle, head);
-  const float right = (ratio[flat_bone::RightThigh] + ratio[flat_bone::RightShin]) / 2,
-              left = (ratio[flat_bone::LeftThigh] + ratio[flat_bone::LeftShin]) / 2;
-  for (const int point : {body25::RightBigToe, body25::RightSmallToe, body25::RightHeel})
-    rebuilt.put(point, body25::RightAnkle, right);
-  for (const int point : {body25::LeftBigToe, body25::LeftSmallToe, body25::LeftHeel})
-    rebuilt.put(point, body25::LeftAnkle, left);
-  rebuilt.put_all(source.right_hand, &FlatPose::right_hand, body25::RightWrist,
-                  ratio[flat_bone::RightForearm]);
-  rebuilt.put_all(source.left_hand, &FlatPose::left_hand, body25::LeftWrist, ratio[flat_bone::LeftForearm]);
-
   FlatPose result = rebuilt.pose();
+  ride_along(source, ratio, result);
   if (touches_) keep_touches(source, from.length, to.length, result);
   return result;
 }

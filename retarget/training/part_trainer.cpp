@@ -10,7 +10,7 @@
 namespace understudy::training {
 namespace {
 
-constexpr int kScansAStep = 24, kDevScans = 120;
+constexpr int kScansAStep = 24, kDevPartScans = 120;
 static_assert(nn::kPartKindNames.size() == nn::kPartKinds);
 
 PartKinds kinds_of(const std::vector<std::string>& names) {
@@ -36,7 +36,7 @@ class PartTrainer final : public TrainingRun {
         seed_(options.seed),
         kinds_(kinds_of(options.kinds)),
         train_(load_training_data(options.data, Split::Train)),
-        dev_(PartSampler(load_training_data(options.data, Split::Dev), kinds_, 12345).next(kDevScans)) {
+        dev_(PartSampler(load_training_data(options.data, Split::Dev), kinds_, 12345).next(kDevPartScans)) {
     net_->to(device());
     own(net_.ptr(), average_.ptr(),
         std::make_unique<torch::optim::AdamW>(net_->parameters(),

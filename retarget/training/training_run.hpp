@@ -142,6 +142,10 @@ int train(const nn::StyleTrainOptions& options);
 int train(const nn::StyleJudgeTrainOptions& options);
 /// Samples are poses; where the options have no end there is one.
 int train(const nn::ProportionsTrainOptions& options);
+/// Samples are pairs of poses.
+int train(const nn::Pose2dTrainOptions& options);
+/// Samples are sequences; where the options have no end there is one.
+int train(const nn::LifterTrainOptions& options);
 /// Of the form "paper"; samples are steps.
 int train_steps(const nn::MotionSpaceTrainOptions& options);
 

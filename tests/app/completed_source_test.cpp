@@ -76,7 +76,7 @@ class CompletedSource : public testing::Test {
   }
   static std::unique_ptr<Source> opened(const SourceOptions& options) {
     auto source = open_source(options);
-    CompletingTools tools;
+    SourceTools tools;
     tools.extractor = [] { return std::make_shared<KnowingExtractor>(); };
     source->set_tools(tools);
     return source;
@@ -143,7 +143,7 @@ TEST_F(CompletedSource, WhatWasMadeIsNotMadeAgain) {
 
 TEST_F(CompletedSource, TellsProgressAndCanBeStopped) {
   const auto source = opened(scans());
-  CompletingTools tools;
+  SourceTools tools;
   tools.extractor = [] { return std::make_shared<KnowingExtractor>(); };
   float share = 0;
   tools.progress = [&](float now) { share = now; };

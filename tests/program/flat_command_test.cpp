@@ -170,8 +170,45 @@ TEST_F(FlatCommand, BadInputIsASentence) {
                                     "limbs", "--out", out("a.glb")}),
                        "the engine 'limbs' is for 2D poses");
   expect_clean_failure(run_program({"retarget", "--source", scratch.path("track"), "--target", target(),
-                                    "--out", out("a.json")}),
-                       "2D poses are performed by a person in a picture");
+                                    "--out", out("a.glb"), "--times", "t.csv"}),
+                       "is 2D poses");
+  expect_clean_failure(run_program({"retarget", "--source", target(), "--target", target(), "--out",
+                                    out("a.glb"), "--fov", "30"}),
+                       "--fov) are for 2D poses");
+}
+
+TEST_F(FlatCommand, ATrackIsLiftedOntoACharacterInSpace) {
+  const auto lift = [&](const std::string& name, const std::vector<std::string>& more) {
+    std::vector<std::string> arguments = {"retarget", "--source", scratch.path("track"), "--target", target(),
+                                          "--out",    out(name)};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return run_program(arguments);
+  };
+  const Finished done = lift("a.bvh", {});
+  ASSERT_EQ(done.code, 0) << done.err;
+  EXPECT_NE(done.err.find("lifted for a person of 1.7 m"), std::string::npos) << done.err;
+  ASSERT_EQ(lift("b.bvh", {}).code, 0);
+  EXPECT_EQ(read_file(out("a.bvh")), read_file(out("b.bvh")));
+  const Finished tall = lift("c.bvh", {"--stature", "1.2", "--fov", "35"});
+  ASSERT_EQ(tall.code, 0) << tall.err;
+  EXPECT_NE(tall.err.find("a person of 1.2 m before a level camera of 35 degrees"), std::string::npos);
+}
+
+TEST_F(FlatCommand, TheSuiteLiftingIsMadeAndEvaluated) {
+  const std::string data = scratch.path("data");
+  test::write_training_folder(data);
+  test::write_walk_clip(data + "/motion/a/walk_poses.npz");
+  const std::string cases = scratch.path("cases"), report = out("report.json");
+  const Finished made = run_program({"cases", data, "--suite", "lifting", "--cases", "2", "--frames", "10",
+                                     "--split", "train", "--out", cases});
+  ASSERT_EQ(made.code, 0) << made.err;
+  const Finished done = run_program({"eval", cases, "--out", report});
+  ASSERT_EQ(done.code, 0) << done.err;
+  const Json mean = Json::parse(read_file(report))["mean"];
+  EXPECT_LT(mean["n_mpjpe_mm"], 150);
+  EXPECT_LT(mean["pa_mpjpe_mm"], mean["n_mpjpe_mm"]);
+  for (const char* const key : {"swaps", "flips", "target_pa_mpjpe_m", "confidence_corr"})
+    EXPECT_TRUE(mean.contains(key)) << key;
 }
 
 TEST_F(FlatCommand, ASuiteIsMadeAndEvaluated) {

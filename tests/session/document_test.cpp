@@ -93,6 +93,21 @@ const Changes& document_changes() {
       CHANGE(scan_edits.largest_cluster = false),
       CHANGE(scan_edits.cluster_gap_m += 1),
       CHANGE(skeleton_edits.pop_back()),
+      CHANGE(flat.reset()),
+      CHANGE(flat->canvas.clear()),
+      CHANGE(flat->layout.clear()),
+      CHANGE(flat->smoothing = 1),
+      CHANGE(flat->ahead = true),
+      CHANGE(flat->edits.pop_back()),
+      CHANGE(flat->edits[0] = SidesExchange{}),
+      CHANGE(takes[1].flat.reset()),
+      CHANGE(takes[1].flat->engine = "limbs"),
+      CHANGE(takes[1].flat->place = FlatPlace::Reference),
+      CHANGE(takes[1].flat->touches = true),
+      CHANGE(takes[1].flat->person.clear()),
+      CHANGE(takes[1].flat->lengths[0].bone = "trunk"),
+      CHANGE(takes[1].flat->lengths[0].pixels = 1),
+      CHANGE(takes[1].flat->lengths[0].locked = false),
       CHANGE(skeleton_edits[0] = SwapEdit{}),
       {"drag.frame", [](SavedDocument& s) { ++drag(s.document).frame; }},
       {"drag.joint", [](SavedDocument& s) { ++drag(s.document).joint; }},
@@ -219,7 +234,13 @@ const Changes& document_changes() {
 
 /// Does not compile once a member is added: then it belongs into fields() and the changes above, too.
 [[maybe_unused]] void all_members_are_known() {
-  [[maybe_unused]] const auto& [source, truth, scan, skeleton, bones, takes] = Document();
+  [[maybe_unused]] const auto& [source, truth, scan, skeleton, flat_source, bones, takes] = Document();
+  [[maybe_unused]] const auto& [canvas, keypoint_layout, calm, ahead, point_edits] = FlatSource();
+  [[maybe_unused]] const auto& [point_frame, point, point_x, point_y, point_falloff] = PointDrag();
+  [[maybe_unused]] const auto& [sides_first, sides_last, sides] = SidesExchange();
+  [[maybe_unused]] const auto& [flat_engine, place, touches, flat_person, flat_lengths] = FlatTake();
+  [[maybe_unused]] const auto& [bone, pixels, locked] = ChosenLength();
+  [[maybe_unused]] const auto& [canvas_x, canvas_y, zoom] = CanvasView();
   [[maybe_unused]] const auto& [wanted, most, bone_edits, second] = OwnBones();
   [[maybe_unused]] const auto& [second_path, matches] = SecondBody();
   [[maybe_unused]] const auto& [path, motion, betas, fps, import, follow, as_scan, clip, source_bones, quiet,
@@ -236,7 +257,7 @@ const Changes& document_changes() {
   [[maybe_unused]] const auto& [normal, height] = FloorPlane();
   [[maybe_unused]] const auto& [drag_frame, drag_joint, offset, drag_falloff, children] = DragEdit();
   [[maybe_unused]] const auto& [swap_first, swap_last, limbs] = SwapEdit();
-  [[maybe_unused]] const auto& [name, performed, target, method, target_edits, pose_edits] = Take();
+  [[maybe_unused]] const auto& [name, performed, target, method, target_edits, pose_edits, flat] = Take();
   [[maybe_unused]] const auto& [target_path, target_betas, target_import, target_forward, target_rig,
                                 target_bones, not_a_person] = TargetOptions();
   [[maybe_unused]] const auto& [engine, extractor, near, offsets, swaps, smooth, lengths, feet, contacts,
@@ -264,7 +285,8 @@ const Changes& document_changes() {
   [[maybe_unused]] const auto& [first, last] = Trim();
   [[maybe_unused]] const auto& [layout, linked, cameras, follows, turntable, of_source, of_take, pane,
                                 weights_joint, trails, ghosts, step, by_time, scale, wipe, cube, overlay,
-                                light, background, background_color, metric, steps, bone_surface] = View();
+                                light, background, background_color, metric, steps, bone_surface, canvases,
+                                lifted, reference] = View();
   [[maybe_unused]] const auto& [of_scan, of_skeletons, of_results, spread] = OverlayLook();
   [[maybe_unused]] const auto& [light_turn, light_height, brightness] = LightLook();
   [[maybe_unused]] const auto& [at, yaw_rad, pitch, distance, fov, orthographic] = CameraState();

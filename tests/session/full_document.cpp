@@ -104,6 +104,9 @@ View view() {
   view.metric = "foot_skate";
   view.steps = false;
   view.bone_surface = BoneSurface::Beside;
+  view.canvases = {{0.25f, 0.75f, 2}, {}};
+  view.lifted = true;
+  view.reference = 0.75f;
   return view;
 }
 
@@ -140,6 +143,14 @@ SavedDocument full_document(const std::string& folder) {
       true, 12, rig_edits(), {folder + "/an other.glb", {{"tail", "tail 2"}, {"horn", ""}}}};
   saved.document.takes = {take(folder), Take{}};
   saved.document.takes[1].target.path = folder + "/b.glb";
+  saved.document.flat = FlatSource{
+      "1280x720",
+      "coco17",
+      0.5f,
+      false,
+      {PointDrag{7, body25::LeftWrist, 20.5f, 30, 4}, SidesExchange{3, 9, SidesExchange::Limbs::Legs}}};
+  saved.document.takes[1].flat =
+      FlatTake{"paper", FlatPlace::Source, false, "2", {{"left_thigh", 120.5f, true}}};
   saved.view = view();
   saved.playback.loop = false;
   saved.playback.rate = 0.25;

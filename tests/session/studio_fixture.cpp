@@ -11,6 +11,7 @@
 #include "retarget/skeleton/curve_doubt.hpp"
 #include "retarget/style/load_style.hpp"
 #include "tests/retarget/pipeline/fixtures.hpp"
+#include "tests/support/flat_track.hpp"
 
 namespace understudy::app {
 namespace {
@@ -141,6 +142,7 @@ StudioServices StudioTest::services() {
     return networks;
   };
   services.motion_space = [] { return std::make_shared<LiftedSpace>(); };
+  services.lengths = [] { return std::make_shared<const SeenLengths>(); };
   services.weights = [] { return std::string("stand-ins:00000000"); };
   services.autosave_folder = path("state");
   return services;

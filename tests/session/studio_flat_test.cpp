@@ -21,11 +21,6 @@ class FlatStudioTest : public StudioTest {
     write_controlnet(path("tall.json"), standing_track(1.4f));
     render::write_png(path("tall.png"), render::Image(640, 560, Vec3(0.2f, 0.5f, 0.3f)));
   }
-  StudioServices flat_services() {
-    StudioServices with = services();
-    with.lengths = [] { return std::make_shared<const SeenLengths>(); };
-    return with;
-  }
   /// The track, performed by the tall person.
   void open_flat(Studio& studio) {
     studio.run("open", {path("track")});
@@ -44,7 +39,7 @@ float length_in(const FlatPose& pose, int bone) {
 }
 
 TEST_F(FlatStudioTest, AFolderIsTheSourceAndAPictureWithPosesBesideWhoPerformsIt) {
-  Studio studio(flat_services());
+  Studio studio(services());
   open_flat(studio);
   const Session& session = studio.session();
   ASSERT_TRUE(session.flat.poses);
@@ -61,7 +56,7 @@ TEST_F(FlatStudioTest, AFolderIsTheSourceAndAPictureWithPosesBesideWhoPerformsIt
 }
 
 TEST_F(FlatStudioTest, TheTakeIsTheVeryTrackOfTheCommandLine) {
-  Studio studio(flat_services());
+  Studio studio(services());
   open_flat(studio);
   FlatOptions options;
   options.source.path = path("track"), options.target.path = path("tall.json");
@@ -71,7 +66,7 @@ TEST_F(FlatStudioTest, TheTakeIsTheVeryTrackOfTheCommandLine) {
 }
 
 TEST_F(FlatStudioTest, ASlidLengthIsPerformedOnBothSidesAndUndone) {
-  Studio studio(flat_services());
+  Studio studio(services());
   open_flat(studio);
   const float before = length_in(result(studio).poses[2], flat_bone::LeftForearm);
   studio.run("flat.length", {"0", "right_forearm", "120"});
@@ -84,7 +79,7 @@ TEST_F(FlatStudioTest, ASlidLengthIsPerformedOnBothSidesAndUndone) {
 }
 
 TEST_F(FlatStudioTest, ALockedLengthStaysWhenTheOtherSideOrThePersonGrows) {
-  Studio studio(flat_services());
+  Studio studio(services());
   open_flat(studio);
   const float before = result(studio).lengths.length[flat_bone::LeftShin];
   studio.run("flat.lock", {"0", "left_shin", "on"});
@@ -97,7 +92,7 @@ TEST_F(FlatStudioTest, ALockedLengthStaysWhenTheOtherSideOrThePersonGrows) {
 }
 
 TEST_F(FlatStudioTest, ADraggedPointIsWhereItWasPutAndPerformed) {
-  Studio studio(flat_services());
+  Studio studio(services());
   open_flat(studio);
   const Vec2 untouched = result(studio).poses[6].at(body25::LeftWrist);
   const Vec2 performed = result(studio).poses[3].at(body25::LeftWrist);
@@ -110,7 +105,7 @@ TEST_F(FlatStudioTest, ADraggedPointIsWhereItWasPutAndPerformed) {
 }
 
 TEST_F(FlatStudioTest, SidesAreExchangedOverARangeAndBackAgain) {
-  Studio studio(flat_services());
+  Studio studio(services());
   open_flat(studio);
   const auto hip = [&](int t) {
     return studio.session().flat.poses->reading.performing().at(t)->at(body25::LeftHip);
@@ -126,7 +121,7 @@ TEST_F(FlatStudioTest, SidesAreExchangedOverARangeAndBackAgain) {
 }
 
 TEST_F(FlatStudioTest, AnotherPersonPerforms) {
-  Studio studio(flat_services());
+  Studio studio(services());
   open_flat(studio);
   const int64_t now = studio.session().flat.poses->reading.performing().person;
   studio.run("source.person", {now == 1 ? "2" : "1"});
@@ -137,7 +132,7 @@ TEST_F(FlatStudioTest, AnotherPersonPerforms) {
 
 TEST_F(FlatStudioTest, ADocumentKeepsAllOfIt) {
   {
-    Studio studio(flat_services());
+    Studio studio(services());
     open_flat(studio);
     studio.run("flat.length", {"0", "trunk", "150"});
     studio.run("flat.place", {"0", "source"});
@@ -146,7 +141,7 @@ TEST_F(FlatStudioTest, ADocumentKeepsAllOfIt) {
     studio.wait_idle();
     studio.run("document.save_as", {path("flat.understudy")});
   }
-  Studio studio(flat_services());
+  Studio studio(services());
   studio.run("open", {path("flat.understudy")});
   studio.wait_idle();
   const Document& document = studio.session().document;
@@ -158,7 +153,7 @@ TEST_F(FlatStudioTest, ADocumentKeepsAllOfIt) {
 }
 
 TEST_F(FlatStudioTest, ProportionsAreSavedAndAreAPersonOfTheirOwn) {
-  Studio studio(flat_services());
+  Studio studio(services());
   open_flat(studio);
   studio.run("flat.save_proportions", {"0", path("lengths")});
   studio.run("open", {path("lengths.json")});
@@ -170,7 +165,7 @@ TEST_F(FlatStudioTest, ProportionsAreSavedAndAreAPersonOfTheirOwn) {
 }
 
 TEST_F(FlatStudioTest, WhatDoesNotFitIsSaidInASentence) {
-  Studio studio(flat_services());
+  Studio studio(services());
   open_both(studio);
   EXPECT_THROW(studio.run("target.add", {path("tall.json")}), Error);
   std::ofstream(path("broken.json")) << R"({"people": [{"pose_keypoints_2d": [1, 2, 0.5]}]})";
@@ -184,7 +179,7 @@ TEST_F(FlatStudioTest, WhatDoesNotFitIsSaidInASentence) {
 }
 
 TEST_F(FlatStudioTest, FiguresSayHowTheOrderOfPointsIsKept) {
-  Studio studio(flat_services());
+  Studio studio(services());
   open_flat(studio);
   const TakeState& take = studio.session().takes[0];
   ASSERT_EQ(take.series.size(), 1u);

@@ -124,6 +124,21 @@ app::Arguments differences(const app::Method& base, const app::Method& other) {
   return settings;
 }
 
+/// The same of how 2D poses are performed.
+app::Arguments draw_flat_rows(const app::FlatTake& base, app::FlatTake& other, Ui& ui) {
+  int place = static_cast<int>(other.place);
+  if (choice_row(ui, {"compare.place", "Stands", "Where the result begins"}, {"On the reference", "In place"},
+                 place))
+    other.place = static_cast<FlatPlace>(place);
+  toggle_row(ui, {"compare.touches", "Touches", "Hands that touch the body or each other keep touching"},
+             other.touches);
+  app::Arguments settings;
+  if (base.place != other.place)
+    settings.push_back(std::string("place=") + kFlatPlaceNames[static_cast<size_t>(other.place)]);
+  if (base.touches != other.touches) settings.push_back("touches=" + on_off(other.touches));
+  return settings;
+}
+
 void draw_scale(const app::Settings& settings, PanelContext& context) {
   constexpr float kScales[] = {0, 0.75f, 1, 1.25f, 1.5f, 2, 2.5f, 3};
   std::vector<std::string> labels;
@@ -239,14 +254,19 @@ bool draw_compare(const app::Session& session, PanelContext& context, CompareSta
   const app::Take* take = selected_take(session);
   if (take == nullptr) return false;
   if (!begin_dialog(ui, "compare", "Compare with", 420)) return true;
-  if (!state.method) state.method = take->method;
+  if (!state.method) state.method = take->method, state.flat = take->flat;
   hint(ui, "A second take of " + take->name + ", made like this:");
-  draw_method_rows(*state.method, ui);
+  app::Arguments arguments;
+  if (take->flat && state.flat) {
+    arguments = draw_flat_rows(*take->flat, *state.flat, ui);
+  } else {
+    draw_method_rows(*state.method, ui);
+    arguments = differences(take->method, *state.method);
+  }
   ImGui::Dummy({0, ui.px(4)});
   ButtonRow buttons(2);
   ButtonOptions apply;
   apply.look = ButtonLook::Main;
-  app::Arguments arguments = differences(take->method, *state.method);
   apply.disabled = arguments.empty();
   apply.tooltip = arguments.empty() ? "Choose something else first: this is how it is made now" : "";
   bool stays = !buttons.add(ui, "compare.cancel", "Cancel", {});
@@ -256,7 +276,7 @@ bool draw_compare(const app::Session& session, PanelContext& context, CompareSta
     stays = false;
   }
   stays = finish_dialog(stays);
-  if (!stays) state.method.reset();
+  if (!stays) state = {};
   return stays;
 }
 

@@ -39,6 +39,7 @@ bool draw_about(PanelContext& context, const std::string& about);
 /// The method of the second take; empty at first: like the selected one.
 struct CompareState {
   std::optional<app::Method> method;
+  std::optional<app::FlatTake> flat;  ///< of a person in a picture
 };
 bool draw_compare(const app::Session& session, PanelContext& context, CompareState& state);
 

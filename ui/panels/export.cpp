@@ -11,6 +11,7 @@
 #include "retarget/base/text.hpp"
 #include "ui/gui/gui.hpp"
 #include "ui/panels/dialogs.hpp"
+#include "ui/panels/export_poses.hpp"
 #include "ui/panels/rows.hpp"
 
 namespace understudy::ui {
@@ -37,14 +38,18 @@ const app::ExportFormat* format_of(const ExportState& state) {
 
 /// Whether each of several takes gets a file of its own.
 bool has_many_files(const app::Session& session, const ExportState& state) {
-  return state.kind == ExportKind::Animation && state.takes == ExportTakes::Files &&
+  return state.kind == ExportKind::Animation && !state.is_flat && state.takes == ExportTakes::Files &&
          session.document.takes.size() > 1;
 }
 
 /// Of each file; "" for a folder.
 std::string file_suffix_of(const ExportState& state) {
   if (state.kind == ExportKind::Animation) {
+    if (state.is_flat) return kFlatSuffixes[static_cast<size_t>(state.flat_as)];
     const app::ExportFormat* const format = format_of(state);
+    if (format != nullptr && format->is_pictures && state.as_pictures &&
+        file_suffix(format->suffix) == ".mp4")
+      return "";
     return format != nullptr ? format->suffix : ".csv";
   }
   return state.kind == ExportKind::Picture ? ".png" : state.as_pictures ? "" : ".mp4";
@@ -246,7 +251,7 @@ void draw_take_rows(const app::Session& session, PanelContext& context, ExportSt
   for (const app::Take& take : session.document.takes) takes.push_back(take.name);
   const app::ExportFormat* const format = format_of(state);
   const bool can_be_one = format != nullptr && format->is_character && takes_that_fit(session).size() > 1;
-  if (takes.size() > 1) {
+  if (takes.size() > 1 && !state.is_flat) {
     std::vector<std::string> choices = {"This take", "One file per take"};
     if (can_be_one) choices.push_back("One file");
     int which = state.takes == ExportTakes::OneFile && !can_be_one ? 0 : static_cast<int>(state.takes);
@@ -290,8 +295,27 @@ void draw_path_rows(Ui& ui, bool is_character, CharacterExportOptions& file) {
       file.root_motion);
 }
 
+/// A film or a folder of pictures.
+void draw_film_row(const app::Session& session, Ui& ui, ExportState& state) {
+  const std::string before = suffix_of(session, state);
+  int how = state.as_pictures ? 1 : 0;
+  const Control control{"export.as", "As", "One MP4 file, or a folder of PNG pictures"};
+  if (!choice_row(ui, control, {"Film", "Pictures"}, how)) return;
+  state.as_pictures = how == 1;
+  follow_suffix(session, state, before);
+}
+
+std::string frames_words_of_flat(const app::Session& session) {
+  return grouped(app::frame_count(session)) + " frames";
+}
+
 void draw_animation_rows(const app::Session& session, PanelContext& context, ExportState& state) {
   Ui& ui = context.ui;
+  if (state.is_flat) {
+    draw_take_rows(session, context, state);
+    if (draw_flat_rows(ui, state)) state.typed = false;
+    return hint(ui, frames_words_of_flat(session) + ", " + figure(frames_per_second(session), "frames/s"));
+  }
   draw_preset(session, ui, state);
   draw_format(session, ui, state);
   draw_take_rows(session, context, state);
@@ -302,7 +326,12 @@ void draw_animation_rows(const app::Session& session, PanelContext& context, Exp
     if (own_bones && format->own_bones) draw_bone_choice(ui, *format, state);
     if (format->is_character)
       draw_character_rows(ui, *made, own_bones && on_own_bones(*format, state), state);
-    draw_path_rows(ui, format->is_character, state.choice.file);
+    if (format->is_pictures) {
+      if (file_suffix(format->suffix) == ".mp4") draw_film_row(session, ui, state);
+      draw_pose_rows(ui, state);
+    } else {
+      draw_path_rows(ui, format->is_character, state.choice.file);
+    }
     const std::string frames = has_many_files(session, state)
                                    ? std::to_string(session.takes.size()) + " takes"
                                    : frames_words(session, session.selected_take);
@@ -342,7 +371,16 @@ void ask_noted(PanelContext& context, ExportState& state, const std::string& com
 void ask_for_animation(const app::Session& session, PanelContext& context, ExportState& state) {
   const app::ExportFormat* const format = format_of(state);
   app::Arguments words;
+  if (state.is_flat) {
+    words = pose_words(state.choice, true);
+    words.insert(words.begin(), {std::to_string(session.selected_take), state.path});
+    return ask_noted(context, state, "export.run", words);
+  }
   if (format != nullptr) words = export_words(*format, state.choice, has_own_bones(session, state));
+  if (format != nullptr && format->is_pictures) {
+    const app::Arguments more = pose_words(state.choice, false);
+    words.insert(words.end(), more.begin(), more.end());
+  }
   if (has_many_files(session, state)) {
     if (format == nullptr) words = {"format=csv"};
     words.insert(words.begin(), state.path);
@@ -381,16 +419,6 @@ void draw_size_rows(Ui& ui, ExportState& state) {
     state.width = whole(*w);
   if (const auto h = typed_number_row(ui, {"export.height", "Height", "Pixels"}, state.height, 0))
     state.height = whole(*h);
-}
-
-/// A film or a folder of pictures.
-void draw_film_row(const app::Session& session, Ui& ui, ExportState& state) {
-  const std::string before = suffix_of(session, state);
-  int how = state.as_pictures ? 1 : 0;
-  const Control control{"export.as", "As", "One MP4 file, or a folder of PNG pictures"};
-  if (!choice_row(ui, control, {"Film", "Pictures"}, how)) return;
-  state.as_pictures = how == 1;
-  follow_suffix(session, state, before);
 }
 
 void draw_picture_rows(const app::Session& session, Ui& ui, ExportState& state) {
@@ -537,6 +565,7 @@ bool export_failed(const app::Session& session, ExportState& state) {
 bool draw_export(const app::Session& session, PanelContext& context, ExportState& state, FilesState& files) {
   Ui& ui = context.ui;
   if (!state.in_the_way.empty()) return draw_overwrite(session, context, state);
+  state.is_flat = app::is_flat_take(session, session.selected_take);
   if (!begin_dialog(ui, "export", title_of(state.kind), 460)) return true;
   draw_choices_above(ui, [&] {
     if (state.kind == ExportKind::Animation)

@@ -30,6 +30,8 @@ struct ExportState {
   ExportTakes takes = ExportTakes::Current;
   std::set<size_t> left_out;  ///< of the one file
   std::string path;           ///< whole, with its suffix; of a file each their folder
+  bool is_flat = false;       ///< the current take is of 2D poses
+  int flat_as = 0;            ///< what such a take is written as, a place in kFlatSuffixes
   bool typed = false;         ///< the path, or chosen; else it follows the take
   int width = 1920, height = 1080;
   bool all = true;                      ///< all views; false: the active one

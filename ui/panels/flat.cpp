@@ -197,7 +197,7 @@ void draw_manner(const app::Session& session, const app::Take& take, PanelContex
   }
 }
 
-std::string words_of(const TrackEdit& edit) {
+std::string edit_words(const TrackEdit& edit) {
   if (const auto* const drag = std::get_if<PointDrag>(&edit)) {
     std::string point = kBodyPointNames[static_cast<size_t>(drag->point)];
     std::replace(point.begin(), point.end(), '_', ' ');
@@ -216,7 +216,7 @@ void draw_edits(const app::FlatSource& flat, PanelContext& context) {
     if (icon_button(ui, "flat.edit." + number, Icon::Trash, {"Remove this edit", "", false, false, 22}))
       context.ask("flat.edit_remove", {number});
     ImGui::SameLine(0, ui.px(6));
-    text_cut(ui, words_of(flat.edits[i]));
+    text_cut(ui, edit_words(flat.edits[i]));
   }
 }
 

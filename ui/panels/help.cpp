@@ -160,6 +160,13 @@ std::string views_help(app::Tool tool) {
   return words;
 }
 
+std::string canvas_help(app::Tool tool) {
+  const std::string own = tool == app::Tool::Joints
+                              ? "Left drag on a point: moves it"
+                              : "Click on somebody: they perform   \u00b7   Left drag: moves the canvas";
+  return own + "   \u00b7   Wheel: zooms to the pointer   \u00b7   Double click: shows the whole canvas";
+}
+
 bool draw_help_here(PanelContext& context, std::optional<Explanation>& here) {
   Ui& ui = context.ui;
   const ImVec4* const ring = ui.focus().place();

@@ -21,6 +21,9 @@ std::vector<MouseUse> mouse_uses(app::Tool tool);
 /// The same as one text.
 std::string views_help(app::Tool tool);
 
+/// The same on a canvas.
+std::string canvas_help(app::Tool tool);
+
 /// What can be chosen without typing more: all that has keys, all entries of the menus, every other command
 /// that needs no argument. Labels tell entries of inner menus whole: "Layout: Overlay".
 std::vector<MenuItem> palette(const app::Session& session, const app::Commands& commands);

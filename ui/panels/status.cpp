@@ -56,7 +56,8 @@ void draw_mouse_hint(const app::Session& session, Ui& ui, float width) {
   if (!has_document(session)) return;
   ImGui::SetCursorPosY((ui.px(kStatusHeight) - ImGui::GetTextLineHeight()) / 2);
   const ColorScope faint(ImGuiCol_Text, ui.theme().text_dim);
-  text_cut(ui, views_help(session.tool), width - ui.px(20));
+  const bool is_flat = app::is_canvas(session, session.view.active_pane);
+  text_cut(ui, is_flat ? canvas_help(session.tool) : views_help(session.tool), width - ui.px(20));
   ui.mark("status.mouse");
 }
 

@@ -129,7 +129,10 @@ ToastUse draw_toasts(Ui& ui, const std::vector<Toast>& toasts, const Rect& over,
     const ToastLine line = toast_line(ui, toasts[k], area);
     const Rect place =
         place_toast({line.width, ui.px(kToastHeight)}, {area.min, {area.max.x, bottom}}, avoid, ui.px(8));
-    draw_toast(ui, {name, toasts[k], line, place, static_cast<int>(k)}, use);
+    const ImGuiWindow* const dialog = ImGui::GetTopMostPopupModal();
+    const bool is_in_the_way =
+        dialog != nullptr && !intersection(place, {dialog->Rect().Min, dialog->Rect().Max}).empty();
+    if (!is_in_the_way) draw_toast(ui, {name, toasts[k], line, place, static_cast<int>(k)}, use);
     bottom = place.min.y - ui.px(6);
   }
   return use;

@@ -1,0 +1,170 @@
+// A person opens 2D poses and somebody's picture, slides and locks lengths, puts points right, lets another
+// perform, compares, saves and opens again: by mouse and keys.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "app/run/exports.hpp"
+#include "render/image.hpp"
+#include "render/pose_picture.hpp"
+#include "retarget/keypoints/keypoint_reader.hpp"
+#include "tests/app/application_fixture.hpp"
+#include "tests/support/flat_track.hpp"
+
+namespace understudy::app {
+namespace {
+
+class FlatPath : public ApplicationTest {
+ protected:
+  void SetUp() override {
+    ApplicationTest::SetUp();
+    write_openpose_folder(path("track"), walking_track(12, 6, 2));
+    write_controlnet(path("tall.json"), standing_track(1.4f));
+    render::write_png(path("tall.png"), render::Image(640, 560, Vec3(0.2f, 0.5f, 0.3f)));
+  }
+  /// A window high enough for the whole inspector.
+  void open_flat() {
+    make(render::ContextKind::Null, {1280, 2400});
+    play("drop " + path("track") + "\nwait\nframes 3\nexpect view.0\nexpect_value frames 12");
+    play("drop " + path("tall.png") + "\nwait\nframes 3\nexpect view.1\nexpect_value takes 1");
+  }
+  const FlatResult& result(size_t take = 0) const { return *session().takes.at(take).flat; }
+  const FlatPoses& source() const { return *session().flat.poses; }
+  float length(int bone) const { return result().lengths.length[bone]; }
+};
+
+TEST_F(FlatPath, ASlidAndALockedLengthArePerformedAndUndone) {
+  open_flat();
+  const float thigh = length(flat_bone::LeftThigh),
+              seen = seen_lengths(result().poses[4])[flat_bone::LeftThigh];
+  play("drag flat.length.left_thigh 60 0\nwait\nframes 3");
+  const float slid = length(flat_bone::LeftThigh);
+  EXPECT_GT(slid, 1.1f * thigh);
+  EXPECT_FLOAT_EQ(length(flat_bone::RightThigh), slid) << "the other side follows";
+  EXPECT_NEAR(seen_lengths(result().poses[4])[flat_bone::LeftThigh], seen * slid / thigh, 1);
+  play("click flat.lock.left_thigh\nwait\nframes 3\nclick flat.larger\nwait\nframes 3");
+  EXPECT_FLOAT_EQ(length(flat_bone::LeftThigh), slid) << "locked";
+  EXPECT_NEAR(length(flat_bone::RightThigh), 1.05f * slid, 0.01f);
+  play("key Ctrl+Z\nwait\nkey Ctrl+Z\nwait\nkey Ctrl+Z\nwait\nframes 3");
+  EXPECT_FLOAT_EQ(length(flat_bone::LeftThigh), thigh) << "one slide is one step";
+}
+
+TEST_F(FlatPath, PointsAreDraggedAndSidesExchangedOverARange) {
+  open_flat();
+  play("playback.frame 5\nwait\nframes 3\nexpect_no view.0.point.left_wrist\nclick flat.tool\nframes 3");
+  const Vec2 before = source().clean[5].pose.at(body25::LeftWrist);
+  const Vec2 performed = result().poses[5].at(body25::LeftWrist);
+  play("drag view.0.point.left_wrist 40 -50\nwait\nframes 3");
+  const Vec2 after = source().clean[5].pose.at(body25::LeftWrist);
+  EXPECT_GT(after.x(), before.x() + 20);
+  EXPECT_LT(after.y(), before.y() - 20);
+  EXPECT_GT((result().poses[5].at(body25::LeftWrist) - performed).norm(), 20);
+  play("expect_value undo_label \"Drag left wrist\"\nkey Ctrl+Z\nwait\nframes 3");
+  EXPECT_EQ(source().clean[5].pose.at(body25::LeftWrist), before);
+
+  const Vec2 hip = source().reading.performing().at(3)->at(body25::LeftHip);
+  play("playback.frame 2\nclick timeline.in\nplayback.frame 4\nclick timeline.out\nframes 3");
+  play("click flat.exchange\nwait\nframes 3\nexpect flat.edit.0");
+  EXPECT_NE(source().reading.performing().at(3)->at(body25::LeftHip), hip);
+  play("click flat.edit.0\nwait\nframes 3\nexpect_no flat.edit.0");
+  EXPECT_EQ(source().reading.performing().at(3)->at(body25::LeftHip), hip);
+}
+
+TEST_F(FlatPath, AClickOnAnotherPersonLetsThemPerform) {
+  open_flat();
+  const int64_t now = source().reading.performing().person;
+  const std::string other = now == 1 ? "2" : "1";
+  play("playback.frame 1\nwait\nframes 3\nclick view.0.person." + other + "\nwait\nframes 3");
+  EXPECT_EQ(std::to_string(source().reading.performing().person), other);
+  play("key Ctrl+Z\nwait");
+  EXPECT_EQ(source().reading.performing().person, now);
+}
+
+TEST_F(FlatPath, TheCanvasIsZoomedAboutThePointerAndMoved) {
+  open_flat();
+  play("scroll view.1 4\nframes 3");
+  EXPECT_GT(canvas_of(session().view, 1).zoom, 1.5f);
+  EXPECT_EQ(canvas_of(session().view, 0).zoom, 1) << "each has its own";
+  const float x = canvas_of(session().view, 1).x;
+  play("drag view.1 80 0\nframes 3");
+  EXPECT_LT(canvas_of(session().view, 1).x, x);
+  play("double_click view.1\nframes 3");
+  EXPECT_EQ(canvas_of(session().view, 1).zoom, 1);
+}
+
+TEST_F(FlatPath, TwoWaysAreComparedByAWipeSavedAndOpenedAgain) {
+  open_flat();
+  play("flat.place 0 source\ncompare.add 0 place=reference\nwait\nframes 3\nexpect_value takes 2");
+  EXPECT_EQ(session().document.takes[1].flat->place, FlatPlace::Reference);
+  EXPECT_NE(result(0).poses[3].at(body25::Neck), result(1).poses[3].at(body25::Neck));
+  play(
+      "view.layout wipe\nframes 3\nexpect view.wipe\nexpect view.1\nexpect view.2\ndrag view.wipe 100 "
+      "0\nframes 3");
+  EXPECT_GT(session().view.wipe, 0.5f);
+  play("playback.play\nframes 30\nplayback.play\nframes 3");
+  play("document.save_as \"" + path("flat.understudy") + "\"\nwait");
+  const FlatPose before = result(1).poses[7];
+  make(render::ContextKind::Null, {1280, 800});
+  play("open \"" + path("flat.understudy") + "\"\nwait\nframes 3\nexpect_value takes 2\nexpect view.wipe");
+  EXPECT_EQ(result(1).poses[7], before);
+}
+
+TEST_F(FlatPath, TheDialogExportsTheTakeAsPointsAndAsPictures) {
+  open_flat();
+  const auto save_as = [&](int as, const std::string& to) {
+    play("dialog.open export\nframes 3\nclick export.as." + std::to_string(as) +
+         "\nframes 2\nclick export.path\nkey Ctrl+A\ntype \"" + path(to) +
+         "\"\nkey Enter\nframes 2\nexpect_no export.bones\nclick export.save\nwait\nframes 3");
+  };
+  save_as(4, "made.npz");
+  const KeypointReading made = read_keypoints(path("made.npz"));
+  ASSERT_EQ(made.frames.size(), 12u);
+  EXPECT_EQ(made.canvas, (Canvas{640, 560}));
+  EXPECT_EQ(*made.performing().at(5), result().poses[5]);
+  play("dialog.open export\nframes 3\nclick export.count.1\nframes 2\nkey Escape\nframes 3");
+  save_as(1, "control");
+  const render::Image picture = render::read_png(path("control/frame_00008.png"));
+  EXPECT_EQ(picture.width, 640);
+  EXPECT_EQ(picture.pixels, render::pose_picture({result().poses[8]}, made.canvas).pixels);
+  EXPECT_TRUE(fs::exists(path("control/frame_00000.png")));
+  EXPECT_FALSE(fs::exists(path("control/frame_00009.png"))) << "4n + 1";
+}
+
+TEST_F(FlatPath, ATakeInSpaceIsExportedAsItsViewIsSeen) {
+  make(render::ContextKind::Null, {1280, 1600});
+  play(kOpenBoth);
+  play("view.camera 0 0 6\nframes 3\ndialog.open export\nframes 3\nclick export.format\nframes 3");
+  const auto& formats = export_formats();
+  const auto poses = std::find_if(formats.begin(), formats.end(),
+                                  [](const ExportFormat& one) { return std::string(one.name) == "poses"; });
+  play("click export.format." + std::to_string(poses - formats.begin()) +
+       "\nframes 3\nexpect export.camera\nclick export.camera.0\nclick export.as.1\nframes 2\nclick "
+       "export.path\nkey "
+       "Ctrl+A\ntype \"" +
+       path("near") + "\"\nkey Enter\nframes 2\nclick export.save\nwait\nframes 3");
+  play("view.camera 0 0 12\nframes 3\nexport.run 0 \"" + path("far") + "\" format=poses camera=view\nwait");
+  const auto height = [&](const std::string& name) {
+    const KeypointReading read = read_keypoints(path(name + ".json"));
+    EXPECT_EQ(read.frames.size(), 24u);
+    return size_of(*read.performing().at(0));
+  };
+  EXPECT_NEAR(height("near") / height("far"), 2, 0.25);
+}
+
+TEST_F(FlatPath, FramesThatCannotBeUsedAreMarkedWithTheirSentence) {
+  KeypointReading track = walking_track(12);
+  for (auto& pose : track.tracks[0].poses)
+    if (pose.frame == 6) pose.pose = FlatPose();
+  auto& poses = track.tracks[0].poses;
+  poses.erase(poses.begin() + 6);
+  write_openpose_folder(path("gap"), track);
+  make(render::ContextKind::Null, {1280, 1200});
+  play("open \"" + path("gap") + "\"\nwait\nframes 3\nplayback.frame 6\nframes 3\nexpect view.warning");
+  const auto bad = bad_frames(session());
+  ASSERT_EQ(bad.size(), 1u);
+  EXPECT_EQ(bad[0].frame, 6);
+  EXPECT_FALSE(bad[0].why.empty());
+}
+
+}  // namespace
+}  // namespace understudy::app

@@ -1,0 +1,142 @@
+// What the lifter's network sees, and where the lifted person stands.
+#include "retarget/pose2d/lift_input.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "retarget/base/error.hpp"
+#include "retarget/pose2d/lifted_path.hpp"
+#include "tests/support/lifted_walk.hpp"
+
+namespace understudy {
+namespace {
+
+constexpr float kDt = 1 / 30.0f;
+
+TEST(LiftInput, PlaceAndSizeInThePictureChangeNothing) {
+  const LiftedWalk walk = lifted_walk(0.5f, 5);
+  LiftInput here, there;
+  for (const FlatPose& pose : walk.poses) {
+    FlatPose moved = pose;
+    for (int p = 0; p < kBodyPoints; ++p)
+      if (pose.has(p)) moved.set(p, 3 * pose.at(p) + Vec2(500, -80), pose.confidence(p));
+    const LiftFrame a = here.push(pose, kDt), b = there.push(moved, kDt);
+    EXPECT_LT((a.numbers - b.numbers).cwiseAbs().maxCoeff(), 2e-3f);
+    EXPECT_NEAR(b.size, 3 * a.size, 1e-2f * a.size);
+  }
+}
+
+TEST(LiftInput, MissingPointsAreZerosAndHipsAreTold) {
+  FlatPose pose = lifted_walk(0, 1).poses[0];
+  pose.forget(body25::LeftWrist);
+  const LiftFrame whole = LiftInput().push(pose, kDt);
+  EXPECT_TRUE(whole.has_hips);
+  EXPECT_TRUE(whole.numbers.segment<kLiftPointInputs>(kLiftPointInputs * body25::LeftWrist).isZero());
+  for (const int p : {body25::MidHip, body25::LeftHip, body25::RightHip}) pose.forget(p);
+  const LiftFrame cut = LiftInput().push(pose, kDt);
+  EXPECT_FALSE(cut.has_hips);
+  EXPECT_EQ(cut.numbers[kLiftInputs - 1], 0);
+}
+
+TEST(LiftInput, WaysAreThoseOfAThirtiethOfASecond) {
+  const LiftedWalk walk = lifted_walk(0.5f, 3);
+  LiftInput fast, slow;
+  fast.push(walk.poses[0], kDt), slow.push(walk.poses[0], 2 * kDt);
+  const LiftFrame a = fast.push(walk.poses[1], kDt), b = slow.push(walk.poses[1], 2 * kDt);
+  const int way = kLiftPointInputs * body25::LeftAnkle + 4;
+  EXPECT_GT(a.numbers.segment<2>(way).norm(), 1e-3f);
+  EXPECT_NEAR(a.numbers[way], 2 * b.numbers[way], 1e-3f);
+}
+
+TEST(LiftInput, RefusesWhatNobodyCouldLift) {
+  FlatPose pose = lifted_walk(0, 1).poses[0];
+  EXPECT_THROW(LiftInput().push(pose, 0), Error);
+  EXPECT_THROW(LiftInput().push({}, kDt), Error);
+  pose.set(body25::Nose, Vec2(std::nanf(""), 3), 1);
+  EXPECT_THROW(LiftInput().push(pose, kDt), Error);
+  FlatPose point;
+  for (const int p : {0, 1, 2, 3}) point.set(p, Vec2(7, 7), 1);
+  EXPECT_THROW(LiftInput().push(point, kDt), Error);
+}
+
+TEST(LiftTruth, OfWhoeverStandsAsideIsThatOfACameraTurnedToThem) {
+  const ShapedBody body = builtin_person();
+  Pose pose;
+  pose.root = Vec3(1.5f, 1, 0);
+  const PosedSkeleton posed = forward_kinematics(body.joints, pose);
+  Pinhole aside = looking_at(Vec3(0, 1, 0), camera_axes(0, 0), 5);
+  const LiftTruth truth = lift_truth(posed, aside);
+  const Vec3 way = (aside.position - hips_middle(posed.joints)).normalized();
+  const Vec3 seen = truth.turns[Pelvis].transpose() * Vec3::UnitZ();  // to the eye, in the pelvis' frame
+  EXPECT_LT((seen - way).norm(), 1e-4f);
+  EXPECT_NEAR(hips_middle(truth.joints).norm(), 0, 1e-5f);
+}
+
+/// A person as they are lifted, without an error.
+LiftedPose perfect(const LiftTruth& truth, const FlatPose& pose) {
+  LiftedPose lifted;
+  lifted.size = 300;
+  lifted.joints = truth.joints * (truth.pixels_a_metre / lifted.size);
+  lifted.origin = pose.at(body25::MidHip);
+  return lifted;
+}
+
+LiftView view_of_walk() {
+  LiftView view;
+  view.canvas = {720, 720};
+  view.fov_deg = 2 * std::atan(360 / 1500.0f) * 180 / kPi;
+  static const ShapedBody body = builtin_person();
+  view.stature_m = stature_of(body.joints);
+  return view;
+}
+
+TEST(LiftedPath, WhoIsLiftedWithoutErrorWalksAsInTheWorld) {
+  for (const float yaw : {0.0f, 1.57f, 2.5f}) {
+    const LiftedWalk walk = lifted_walk(yaw);
+    LiftedPath path(view_of_walk());
+    Joints first, last;
+    for (size_t t = 0; t < walk.poses.size(); ++t) {
+      last = path.push(perfect(walk.truth[t], walk.poses[t]), walk.poses[t], walk.dt).joints;
+      if (t == 0) first = last;
+      EXPECT_NEAR(last.col(1).minCoeff(), 0.02f, 0.08f) << "the floor, frame " << t;
+    }
+    const auto way = [](const Joints& a, const Joints& b) {
+      return Vec3((b.row(Pelvis) - a.row(Pelvis)).transpose());
+    };
+    const ShapedBody body = builtin_person();
+    const Motion motion = builtin_motion("walk", body.joints);
+    const Vec3 truth = camera_axes(yaw, 0.05f).transpose() *
+                       (motion.poses[walk.poses.size() - 1].root - motion.poses[0].root);
+    EXPECT_NEAR(way(first, last).x(), truth.x(), 0.1f + 0.1f * std::abs(truth.x()));
+    EXPECT_NEAR(way(first, last).z(), truth.z(), 0.15f + 0.35f * std::abs(truth.z())) << yaw;
+  }
+}
+
+TEST(LiftedPath, TellsWhatIsSeenAndHowSureItIs) {
+  const LiftedWalk walk = lifted_walk(0.3f, 1);
+  FlatPose pose = walk.poses[0];
+  LiftedPose lifted = perfect(walk.truth[0], pose);
+  lifted.off[LeftWrist] = 0.2f;
+  for (const int p : {body25::LeftWrist, body25::LeftElbow}) pose.forget(p);
+  const Extraction out = LiftedPath(view_of_walk()).push(lifted, pose, walk.dt);
+  EXPECT_EQ(out.visibility[LeftWrist], 0);
+  EXPECT_EQ(out.visibility[RightWrist], 1);
+  EXPECT_LT(out.confidence[LeftWrist], 0.5f);
+  EXPECT_GT(out.confidence[RightWrist], 0.9f);
+  EXPECT_FALSE(out.exact);
+}
+
+TEST(LiftedPath, RefusesViewsOfNobody) {
+  LiftView view;
+  EXPECT_THROW(LiftedPath{view}, Error);
+  view.canvas = {640, 480};
+  view.stature_m = 9;
+  EXPECT_THROW(LiftedPath{view}, Error);
+  view.stature_m = 1.7f;
+  view.fov_deg = 180;
+  EXPECT_THROW(LiftedPath{view}, Error);
+}
+
+}  // namespace
+}  // namespace understudy
