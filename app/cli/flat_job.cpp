@@ -74,13 +74,15 @@ void add_flat_options(CLI::App& command, FlatOptions& flat) {
 }
 
 bool is_flat_job(const JobOptions& job) {
-  const bool onto_flat = is_proportions_file(job.target.path) || looks_like_keypoints(job.target.path);
-  // A folder that is still being written may have no pose in it yet.
+  const auto is_flat = [](const std::string& path) {
+    return is_proportions_file(path) || looks_like_keypoints(path);
+  };
+  if (!job.source.motion.empty() || job.source.blend || !is_flat(job.target.path)) return false;
+  // A folder that is still being written may have no pose in it yet; the target tells, then.
   std::error_code failed;
-  const bool may_come = job.source.follow && job.source.motion.empty() && !job.source.blend &&
-                        std::filesystem::is_directory(job.source.path, failed) &&
+  const bool may_come = job.source.follow && std::filesystem::is_directory(job.source.path, failed) &&
                         std::filesystem::is_empty(job.source.path, failed);
-  return onto_flat && (may_come || is_keypoint_source(job.source));
+  return may_come || is_keypoint_source(job.source);
 }
 
 void run_flat_job(const JobOptions& job, FlatOptions flat) {

@@ -218,6 +218,11 @@ Case read_case(const std::string& folder) {
   result.style = style_of(json, path);
   result.flat = flat_of(json, path);
   result.lifted = json.contains("lifted") && json["lifted"] == true;
+  if (json.contains("fov")) {
+    US_CHECK(json["fov"].is_number() && json["fov"].get<double>() >= 1 && json["fov"].get<double>() <= 170,
+             path, ": \"fov\" is no angle from 1 to 170 degrees");
+    result.fov = json["fov"].get<double>();
+  }
   if (json.contains("fps")) {
     US_CHECK(json["fps"].is_number() && json["fps"].get<double>() > 0, path,
              ": \"fps\" is not a positive number");

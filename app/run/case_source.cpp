@@ -38,6 +38,7 @@ SourceOptions case_source(const Case& c) {
   options.import.units = "m";
   options.import.up = "y";
   options.import.floor = 0.0f;
+  if (c.fov > 0) options.fov = c.fov;
   options.quiet = true;  // nothing was decided
   return options;
 }

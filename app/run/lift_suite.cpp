@@ -1,6 +1,7 @@
 #include "app/run/lift_suite.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 
 #include "app/run/case_writer.hpp"
@@ -16,6 +17,7 @@ namespace fs = std::filesystem;
 
 constexpr int kLiftPairs = 30;
 constexpr float kLiftJitter_m = 0.015f, kLiftNearest_m = 1.5f;
+constexpr float kFarFov_deg = 1;  // of a camera without perspective, about
 
 /// One that nobody comes too near.
 Pinhole lift_view(const std::vector<Pose>& poses, Rng& rng) {
@@ -67,8 +69,10 @@ std::vector<Joints> joints_of(const Joints& rest, const std::vector<Pose>& poses
 }
 
 void write_lift_case(const fs::path& folder, const KeypointReading& seen, const ExactPerson& target,
-                     const Npz& truth, bool noisy) {
+                     const Npz& truth, const Pinhole& camera, bool noisy) {
   fs::create_directories(folder);
+  const float fov =
+      camera.orthographic ? kFarFov_deg : 360 / kPi * std::atan(camera.centre.y() / camera.focal);
   write_keypoint_npz((folder / "source.npz").string(), seen);
   write_target((folder / "target.obj").string(), target);
   write_npz((folder / "truth.npz").string(), truth);
@@ -77,6 +81,7 @@ void write_lift_case(const fs::path& folder, const KeypointReading& seen, const 
                                                {"target", "target.obj"},
                                                {"truth", "truth.npz"},
                                                {"lifted", true},
+                                               {"fov", fov},
                                                {"tags", {"lifting", noisy ? "noisy" : "clean"}}});
 }
 
@@ -111,7 +116,7 @@ int make_lift_suite(const SuiteOptions& options, const std::function<void(const 
     for (const bool noisy : {false, true}) {
       const std::string name = printed("%03d_%s", pair, noisy ? "noisy" : "clean");
       write_lift_case(fs::path(options.out) / name, seen_by(camera, source, poses, noisy, rng), target, truth,
-                      noisy);
+                      camera, noisy);
       done(name);
     }
   }

@@ -15,6 +15,7 @@
 #include "retarget/base/program_files.hpp"
 #include "retarget/base/text.hpp"
 #include "retarget/motion_space/paper_space.hpp"
+#include "retarget/networks/code_transfer.hpp"
 #include "retarget/networks/dense_extractor.hpp"
 #include "retarget/networks/length_reader.hpp"
 #include "retarget/networks/lifter_network.hpp"
@@ -118,6 +119,7 @@ constexpr FlatMaker kFlatMakers[] = {
      [](const FlatEngine& wanted, const std::string&) -> std::unique_ptr<KeypointTransfer> {
        return std::make_unique<LimbTransfer>(wanted.touches);
      }},
+    {"paper", [](const FlatEngine&, const std::string& weights) { return load_code_transfer(weights); }},
     {"lift", [](const FlatEngine& wanted, const std::string& weights) -> std::unique_ptr<KeypointTransfer> {
        return std::make_unique<LiftTransfer>(load_network_lifter(weights), wanted.touches,
                                              static_cast<float>(1 / wanted.fps));

@@ -36,8 +36,11 @@ const MethodChoices& flat_engines() {
       {"limbs", "Limbs", "rebuilt limbs",
        "rebuilds 2D poses from the mid-hip outwards, each bone as much longer as the other person's is",
        nullptr},
-      {"lift", "Lift", "lifted and seen again",
-       "lifts 2D poses into space, performs them on the other person's bones and looks at them again",
+      {"paper", "Paper", "paper's engine", "the network of paper 5 decodes a pose's code with the person's",
+       "pose2d.weights"},
+      {"lift", "Lift", "lifted poses",
+       "lifts 2D poses into space, onto the other person's bones, and sees them again; makes up what is "
+       "missing",
        "lifter.weights"}};
   return all;
 }
