@@ -250,9 +250,7 @@ std::string flat_engine(const MethodOptions& how) {
 FlatTools flat_tools(const MethodOptions& how) {
   const nn::NetworkOptions options = network_options(how);
   return {nn::load_length_reader(nn::weights_folder(options)),
-          [options](const std::string& name, bool touches) {
-            return nn::load_keypoint_transfer(options, name, touches);
-          }};
+          [options](const FlatEngine& wanted) { return nn::load_keypoint_transfer(options, wanted); }};
 }
 
 void add_tempo_options(CLI::App& command, TempoChoice& tempo) {

@@ -44,10 +44,10 @@ StudioServices studio_services(const std::string& weights) {
     options.weights = weights;
     return nn::load_length_reader(nn::weights_folder(options));
   };
-  services.flat_engine = [weights](const std::string& name, bool touches) {
+  services.flat_engine = [weights](const FlatEngine& wanted) {
     nn::NetworkOptions options;
     options.weights = weights;
-    return nn::load_keypoint_transfer(options, name, touches);
+    return nn::load_keypoint_transfer(options, wanted);
   };
   services.weights = [weights] {
     nn::NetworkOptions options;

@@ -55,9 +55,10 @@ void look_at(const FlatPose& pose, const LengthReader& lengths, ProportionEstima
   if (tells_lengths(pose)) estimate.push(pose, lengths.read(pose));
 }
 
-std::unique_ptr<KeypointTransfer> made_engine(const FlatOptions& options, const FlatTools& tools) {
+std::unique_ptr<KeypointTransfer> made_engine(const FlatOptions& options, const FlatTools& tools,
+                                              double fps) {
   flat_engine_named(options.engine);  // throws where there is none
-  if (tools.engine) return tools.engine(options.engine, options.touches);
+  if (tools.engine) return tools.engine({options.engine, options.touches, fps});
   auto limbs = std::make_unique<LimbTransfer>(options.touches);
   US_CHECK(options.engine == limbs->name(), "the engine '", options.engine, "' needs weights");
   return limbs;
@@ -201,8 +202,9 @@ FlatTarget open_flat_target(const FlatSourceOptions& options, const LengthReader
   return target;
 }
 
-FlatPerformer::FlatPerformer(const FlatTarget& target, const FlatOptions& options, const FlatTools& tools)
-    : retargeter_(made_engine(options, tools), target, options.place),
+FlatPerformer::FlatPerformer(const FlatTarget& target, const FlatOptions& options, const FlatTools& tools,
+                             double fps)
+    : retargeter_(made_engine(options, tools, fps), target, options.place),
       lengths_(tools.lengths),
       keeps_size_(!options.growth) {}
 
@@ -224,7 +226,7 @@ FlatTrack perform_track(const KeypointReading& source, const std::vector<CleanPo
                         const FlatOptions& options, const FlatTools& tools) {
   FlatTrack made;
   made.result = empty_result(source, target, options.place);
-  FlatPerformer performer(target, options, tools);
+  FlatPerformer performer(target, options, tools, source.fps);
   if (source_lengths) performer.set_source_lengths(*source_lengths);
   for (size_t frame = 0; frame < clean.size(); ++frame) {
     check_interrupt("before frame " + std::to_string(frame));
@@ -272,7 +274,7 @@ FlatPerformance follow_flat(const FlatOptions& options, const FlatTools& tools,
   KeypointFilterOptions filtering;
   filtering.smoothing = options.smoothing;
   KeypointFilter filter(filtering);
-  FlatPerformer performer(target, options, tools);
+  FlatPerformer performer(target, options, tools, follower.fps());
   std::vector<KeypointFrame> frames;
   KeypointTrack track;
   track.person = 1;

@@ -17,10 +17,8 @@
 
 namespace understudy::app {
 
-/// One of flat_engines(), new: it keeps state. touches: hands that touch keep touching. Throws Error for
-/// another name, and where its weights are missing.
-using FlatEngineMaker =
-    std::function<std::unique_ptr<KeypointTransfer>(const std::string& name, bool touches)>;
+/// A new one: it keeps state. Throws Error for a name that there is not, and where weights are missing.
+using FlatEngineMaker = std::function<std::unique_ptr<KeypointTransfer>(const FlatEngine& wanted)>;
 
 /// What 2D poses are performed with: the program passes trained networks, tests their own.
 struct FlatTools {
@@ -78,7 +76,7 @@ constexpr float kUncertainLength = 0.12f;
 class FlatPerformer {
  public:
   /// Throws Error as FlatTools::engine and FlatRetargeter do.
-  FlatPerformer(const FlatTarget& target, const FlatOptions& options, const FlatTools& tools);
+  FlatPerformer(const FlatTarget& target, const FlatOptions& options, const FlatTools& tools, double fps);
   /// Read ahead; without it they are learned as frames come.
   void set_source_lengths(const Proportions& lengths) { ahead_ = lengths; }
   /// dt: seconds since the last frame. Nobody before anybody was seen.

@@ -109,24 +109,20 @@ std::shared_ptr<MotionStyle> load_any_style(const StyleChoice& choice) {
   return style;
 }
 
-/// What an engine of 2D poses is made of.
-struct FlatParts {
-  const NetworkOptions& options;
-  bool touches;
-  std::string weights;  ///< its file; empty: it has none
-};
+/// Makes one of flat_engines(); weights: its file, empty where it has none.
 struct FlatMaker {
-  const char* name;  ///< one of flat_engines()
-  std::unique_ptr<KeypointTransfer> (*make)(const FlatParts&);
+  const char* name;
+  std::unique_ptr<KeypointTransfer> (*make)(const FlatEngine& wanted, const std::string& weights);
 };
 constexpr FlatMaker kFlatMakers[] = {
     {"limbs",
-     [](const FlatParts& parts) -> std::unique_ptr<KeypointTransfer> {
-       return std::make_unique<LimbTransfer>(parts.touches);
+     [](const FlatEngine& wanted, const std::string&) -> std::unique_ptr<KeypointTransfer> {
+       return std::make_unique<LimbTransfer>(wanted.touches);
      }},
-    {"paper", [](const FlatParts& parts) { return load_code_transfer(parts.weights); }},
-    {"lift", [](const FlatParts& parts) -> std::unique_ptr<KeypointTransfer> {
-       return std::make_unique<LiftTransfer>(load_network_lifter(parts.weights), parts.touches);
+    {"paper", [](const FlatEngine&, const std::string& weights) { return load_code_transfer(weights); }},
+    {"lift", [](const FlatEngine& wanted, const std::string& weights) -> std::unique_ptr<KeypointTransfer> {
+       return std::make_unique<LiftTransfer>(load_network_lifter(weights), wanted.touches,
+                                             static_cast<float>(1 / wanted.fps));
      }}};
 
 /// The engine's own file, or the one of that name in the folder.
@@ -220,19 +216,19 @@ std::unique_ptr<LengthReader> load_length_reader(const std::string& folder) {
   return load_network_length_reader(folder + "/proportions.weights");
 }
 
-std::unique_ptr<Lifter> load_lifter(const std::string& folder) {
-  return load_network_lifter(folder + "/lifter.weights");
-}
-
 std::unique_ptr<KeypointTransfer> load_keypoint_transfer(const NetworkOptions& options,
-                                                         const std::string& name, bool touches) {
-  const MethodChoice& engine = flat_engine_named(name);
-  US_CHECK(engine.weights || options.engine_file.empty(), options.engine_file, ": the engine '", name,
+                                                         const FlatEngine& wanted) {
+  const MethodChoice& engine = flat_engine_named(wanted.name);
+  US_CHECK(engine.weights || options.engine_file.empty(), options.engine_file, ": the engine '", wanted.name,
            "' has no network, so no weights");
   for (const FlatMaker& one : kFlatMakers)
-    if (name == one.name)
-      return one.make({options, touches, engine.weights ? weights_of(options, engine.weights) : ""});
-  throw Error("nothing makes the engine '" + name + "'");
+    if (wanted.name == one.name)
+      return one.make(wanted, engine.weights ? weights_of(options, engine.weights) : "");
+  throw Error("nothing makes the engine '" + wanted.name + "'");
+}
+
+std::unique_ptr<Lifter> load_lifter(const std::string& folder) {
+  return load_network_lifter(folder + "/lifter.weights");
 }
 
 RuntimeReport runtime_report() {

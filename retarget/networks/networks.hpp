@@ -56,15 +56,15 @@ std::unique_ptr<StyleJudge> load_style_judge(const std::string& path);
 /// version.
 std::unique_ptr<LengthReader> load_length_reader(const std::string& folder);
 
+/// What makes one person's 2D poses another's. Weights are the folder's, or options.engine_file;
+/// options.engine does not count. Throws Error for a name that is none of flat_engines(), and naming the file
+/// when weights are missing, damaged, of another network or of another version.
+std::unique_ptr<KeypointTransfer> load_keypoint_transfer(const NetworkOptions& options,
+                                                         const FlatEngine& wanted);
+
 /// What lifts 2D poses into space, with the weights in that folder (lifter.weights); it needs no LibTorch.
 /// Throws Error as load_length_reader does.
 std::unique_ptr<Lifter> load_lifter(const std::string& folder);
-
-/// One of flat_engines(): what makes one person's 2D poses another's. touches: of "limbs", see LimbTransfer.
-/// Weights are the folder's, or options.engine_file; options.engine does not count. Throws Error for another
-/// name, and naming the file when weights are missing, damaged, of another network or of another version.
-std::unique_ptr<KeypointTransfer> load_keypoint_transfer(const NetworkOptions& options,
-                                                         const std::string& name, bool touches);
 
 /// The folder that weights are read from; empty when there is none.
 std::string weights_folder(const NetworkOptions& options);

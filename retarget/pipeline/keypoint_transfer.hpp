@@ -32,4 +32,11 @@ class KeypointTransfer {
   virtual std::string name() const = 0;
 };
 
+/// Which engine of 2D poses is wanted.
+struct FlatEngine {
+  std::string name;     ///< one of flat_engines()
+  bool touches = true;  ///< hands that touch keep touching; of engines that can let them go
+  double fps = 30;      ///< of the poses; for those to whom time counts
+};
+
 }  // namespace understudy
