@@ -207,7 +207,7 @@ void Studio::follow_flat() {
     session_.flat.poses.reset(), b.flat_key.clear(), b.flat_shown.clear();
     return;
   }
-  std::string key = key_of(document.flat, document.source);
+  std::string key = key_of(document.flat, document.source, performs_in_space(document));
   for (size_t k = 0; k < document.takes.size(); ++k)
     if (const Take& take = document.takes[k]; take.flat)
       key += key_of(b.take_ids[k], take.target.path, take.flat);
@@ -293,13 +293,16 @@ void Studio::take_in_flat(FlatJob& work) {
 
 /// As the engine's source is taken in, so that timeline, marks and figures have one.
 void Studio::show_flat_source(const FlatJob& work) {
-  if (session_.flat.poses == work.poses) return;
+  const bool in_space = performs_in_space(session_.document);  // the engine lifts it, and tells
+  const bool is_whole = session_.source.problem.empty() && !session_.source.name.empty() &&
+                        session_.source.frames.size() == work.poses->clean.size();
+  if (session_.flat.poses == work.poses && (in_space || is_whole)) return;
   const bool is_new = std::exchange(background_->flat_shown, work.raw_key) != work.raw_key;
   session_.flat.poses = work.poses;
   ++session_.flat.generation;
   if (is_new) session_.playback.live = false;
-  if (performs_in_space(session_.document)) return;  // the engine lifts it, and tells
-  if (is_new || session_.source.name.empty()) {
+  if (in_space) return;
+  if (is_new || !is_whole) {
     SourceOpened opened;
     opened.name = file_name(work.source.path);
     opened.fps = work.raw->fps;

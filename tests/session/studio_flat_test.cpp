@@ -208,6 +208,22 @@ TEST_F(FlatStudioTest, ACharacterPerformsALiftedTrackBesideAPersonInAPicture) {
   EXPECT_EQ(frame_count(session), kCount);
 }
 
+TEST_F(FlatStudioTest, WithoutALifterACharacterIsRefusedAndThePicturesGoOn) {
+  StudioServices without = services();
+  without.lifter = []() -> std::unique_ptr<Lifter> { throw Error("lifter.weights: there is no such file"); };
+  Studio studio(without);
+  open_flat(studio);
+  studio.run("open", {path("target.obj")});
+  studio.wait_idle();
+  ASSERT_FALSE(studio.session().errors.empty());
+  EXPECT_NE(studio.session().errors.front().text.find("lifter.weights"), std::string::npos);
+  studio.run("target.remove", {"1"});
+  studio.wait_idle();
+  EXPECT_EQ(studio.session().source.frames.size(), size_t{kCount});
+  EXPECT_TRUE(studio.session().source.problem.empty());
+  EXPECT_EQ(result(studio).poses.size(), size_t{kCount});
+}
+
 TEST_F(FlatStudioTest, FiguresSayHowTheOrderOfPointsIsKept) {
   Studio studio(services());
   open_flat(studio);

@@ -182,7 +182,10 @@ Image canvas_picture(const Session& session, const PaneContent& pane,
   const int frame = pane_frame(session, pane);
   const Canvas canvas = canvas_of_pane(session, pane);
   if (!canvas.is_known()) return {};
-  if (pane.source) return frame < 0 ? Image() : source_picture(*session.flat.poses, frame, moved);
+  if (pane.source) {  // of a source that is just opened, frames may be known and poses still the old ones
+    const bool is_there = clean_at(session, frame) != nullptr;
+    return is_there ? source_picture(*session.flat.poses, frame, moved) : Image();
+  }
   return take_picture(*result_of(session, pane), canvas, frame, session.view.reference);
 }
 
