@@ -10,7 +10,7 @@
 namespace understudy {
 namespace {
 
-std::unique_ptr<Lifter> shipped() {
+std::unique_ptr<Lifter> shipped_lifter() {
   auto lifter = nn::load_network_lifter(US_SOURCE_DIR "/assets/weights/lifter.weights");
   LiftView view;
   view.canvas = {720, 720};
@@ -40,16 +40,16 @@ double error_mm(const std::vector<Extraction>& lifted, const LiftedWalk& walk) {
 TEST(LifterNetwork, LiftsAWalkFromWhereverItIsSeen) {
   for (const float yaw : {0.0f, 0.8f, 1.6f, 3.0f}) {
     const LiftedWalk walk = lifted_walk(yaw);
-    EXPECT_LT(error_mm(lifted(*shipped(), walk), walk), 90) << yaw;
+    EXPECT_LT(error_mm(lifted(*shipped_lifter(), walk), walk), 90) << yaw;
   }
 }
 
 TEST(LifterNetwork, KnowsWhichJointsItDoesNotSee) {
   LiftedWalk walk = lifted_walk(0.5f, 20);
-  const std::vector<Extraction> whole = lifted(*shipped(), walk);
+  const std::vector<Extraction> whole = lifted(*shipped_lifter(), walk);
   for (FlatPose& pose : walk.poses)
     for (const int p : {body25::LeftElbow, body25::LeftWrist}) pose.forget(p);
-  const std::vector<Extraction> cut = lifted(*shipped(), walk);
+  const std::vector<Extraction> cut = lifted(*shipped_lifter(), walk);
   EXPECT_LT(cut.back().confidence[LeftWrist], whole.back().confidence[LeftWrist]);
   EXPECT_EQ(cut.back().visibility[LeftWrist], 0);
   EXPECT_EQ(cut.back().visibility[RightWrist], 1);
@@ -59,14 +59,14 @@ TEST(LifterNetwork, NoSkeletonDependsOnALaterPose) {
   const LiftedWalk walk = lifted_walk(0.5f, 20), other = lifted_walk(2, 20);
   LiftedWalk mixed = walk;
   for (size_t t = 12; t < 20; ++t) mixed.poses[t] = other.poses[t];
-  const std::vector<Extraction> a = lifted(*shipped(), walk), b = lifted(*shipped(), mixed);
+  const std::vector<Extraction> a = lifted(*shipped_lifter(), walk), b = lifted(*shipped_lifter(), mixed);
   for (size_t t = 0; t < 12; ++t) EXPECT_TRUE(same(a[t], b[t])) << t;
   EXPECT_FALSE(same(a[12], b[12]));
 }
 
 TEST(LifterNetwork, RemembersAndForgets) {
   const LiftedWalk walk = lifted_walk(0.5f, 10);
-  const auto lifter = shipped();
+  const auto lifter = shipped_lifter();
   const std::vector<Extraction> first = lifted(*lifter, walk);
   const std::any before = lifter->memory();
   const Extraction next = lifter->push(walk.poses[3], walk.dt);
@@ -81,7 +81,7 @@ TEST(LifterNetwork, RemembersAndForgets) {
 
 TEST(LifterNetwork, ARefusedPoseLeavesNoTrace) {
   const LiftedWalk walk = lifted_walk(0.5f, 6);
-  const auto plain = shipped(), disturbed = shipped();
+  const auto plain = shipped_lifter(), disturbed = shipped_lifter();
   for (const FlatPose& pose : walk.poses) {
     EXPECT_THROW(disturbed->push({}, walk.dt), Error);
     EXPECT_TRUE(same(plain->push(pose, walk.dt), disturbed->push(pose, walk.dt)));
@@ -90,7 +90,7 @@ TEST(LifterNetwork, ARefusedPoseLeavesNoTrace) {
 
 TEST(LifterNetwork, TenThousandFramesEndAsTheyBegan) {
   const LiftedWalk walk = lifted_walk(0.8f, 1000);
-  const auto lifter = shipped();
+  const auto lifter = shipped_lifter();
   const auto round = [&] {
     const std::vector<Extraction> all = lifted(*lifter, walk);
     return error_mm({all.begin() + static_cast<std::ptrdiff_t>(all.size() / 2), all.end()},
