@@ -251,11 +251,17 @@ std::vector<BadFrame> doubted_frames(const Session& session) {
 std::vector<BadFrame> bad_frames(const Session& session) {
   if (session.source.no_person && session.document.bones.wanted) return doubted_frames(session);
   std::vector<BadFrame> bad;
+  if (const auto& poses = session.document.flat ? session.flat.poses : nullptr) {
+    // The filter says what is wrong; a network that lifts is never sure of depth.
+    const size_t count = std::min(poses->clean.size(), session.source.frames.size());
+    for (size_t i = 0; i < count; ++i)
+      if (!poses->clean[i].problem.empty()) bad.push_back({static_cast<int>(i), poses->clean[i].problem});
+    return bad;
+  }
   const auto usual = usual_lengths(session.source.frames);
   for (size_t i = 0; i < session.source.frames.size(); ++i) {
-    std::string why = badness(session.source.frames[i], seen_joints(session, static_cast<int>(i)), usual);
-    if (why.empty() && session.flat.poses && i < session.flat.poses->clean.size())
-      why = session.flat.poses->clean[i].problem;
+    const std::string why =
+        badness(session.source.frames[i], seen_joints(session, static_cast<int>(i)), usual);
     if (!why.empty()) bad.push_back({static_cast<int>(i), why});
   }
   return bad;

@@ -11,6 +11,7 @@
 #include "retarget/pose2d/lift_input.hpp"
 #include "retarget/pose2d/lifted_path.hpp"
 #include "retarget/training/lift_step.hpp"
+#include "retarget/training/proportion_data.hpp"
 #include "retarget/training/training_run.hpp"
 #include "tests/retarget/nn/motion_support.hpp"
 
