@@ -26,8 +26,8 @@ class FlatRetargeter {
  public:
   /// Throws Error when a length of the target is not above 0.
   FlatRetargeter(std::unique_ptr<KeypointTransfer> engine, FlatTarget target, FlatPlace place);
-  /// source: lengths of who is seen, as far as they are known by now. growth: how many times as large as those
-  /// the source is in this frame, which the result shall not be; 1: it grows as the source does. Before
+  /// source: lengths of who is seen, as far as they are known by now. growth: how many times as large as
+  /// those the source is in this frame, which the result shall not be; 1: it grows as the source does. Before
   /// anybody was seen: nobody.
   FlatPose push(const CleanPose& seen, const Proportions& source, float growth = 1);
 
