@@ -1,6 +1,6 @@
 #!/bin/bash
-# screenshots/flat.sh [WHAT...]: makes the pictures of 2D poses in this folder, 55 to 59. WHAT: dance (55), crowd (56), turn (57),
-# engines (58), studio (59); without one all.
+# screenshots/flat.sh [WHAT...]: makes the pictures of 2D poses in this folder, 55 to 60. WHAT: dance (55), crowd (56), turn (57),
+# engines (58), studio (59), lifted (60); without one all.
 # Needs build/understudy, or $UNDERSTUDY, and what ./test installs (node, chromium). With the folder $OUT it makes PNGs there,
 # as tests do. DATA: a data folder (see train --data) whose CMU dance turns in picture 57, and whose people are in 58; without
 # it there is no 58, and the built-in dance in 57.
@@ -61,16 +61,35 @@ turn() {
   shown 57_flat_turn 1400
 }
 
+# Six odd people whom nothing was learned from, by every engine.
+engines() {
+  [ -n "${DATA:-}" ] || { echo "flat.sh: no engines without DATA" >&2; return; }
+  "$understudy" cases "$DATA" --suite pose2d-odd --cases 6 --out "$work/cases"
+  "$understudy" eval "$work/cases" --filter picture --pictures "$work"
+  mv "$work/flat_cases.png" "$work/58_flat_engines.png"
+  shown 58_flat_engines 1200
+}
+
+# The bundled dance lifted onto the bundled targets.
+lifted() {
+  local who
+  for who in adult child; do
+    "$understudy" retarget --source "$samples/poses" --target "$samples/target_$who.glb" --out "$work/$who.glb"
+  done
+  "$understudy" sheet "$work"/{adult,child}.glb --every 0.29 --columns 11 --angle 0 --out "$work/60_flat_lifted.png"
+  shown 60_flat_lifted 1400
+}
+
 # In the studio's window.
 studio() {
   "$understudy" play screenshots/flat.us --out "$work"
   shown 59_flat_studio 1280
 }
 
-[ $# -gt 0 ] || set -- dance crowd turn studio
+[ $# -gt 0 ] || set -- dance crowd turn engines studio lifted
 for what in "$@"; do
   case $what in
-    dance | crowd | turn | studio) $what ;;
+    dance | crowd | turn | engines | studio | lifted) $what ;;
     *) echo "flat.sh: no picture is called '$what'" >&2; exit 2 ;;
   esac
 done

@@ -77,14 +77,16 @@ void write_style_figures(const std::string& folder, const Json& summary) {
                                              "who is wanted, with their median"}));
 }
 
-int eval(const EvalOptions& options, const std::string& out, const std::string& pictures) {
+int eval(EvalOptions options, const std::string& out, const std::string& pictures) {
   check_writable(out);
+  options.pictures = !pictures.empty();
   const Evaluation evaluation = evaluate(options, [](const CaseResult& result) {
     std::printf("%s\n", one_line(result).c_str());
     std::fflush(stdout);
   });
   if (!out.empty()) write_json(out, report_of(options, evaluation));
   if (!pictures.empty()) write_worst_frames(pictures, evaluation.breakdown.worst());
+  if (!pictures.empty()) write_flat_pictures(pictures, evaluation.flat_moments);
   if (!pictures.empty() && !evaluation.style.is_null()) write_style_figures(pictures, evaluation.style);
   std::printf("mean: %s\n", to_json(evaluation.mean).dump().c_str());
   return evaluation.failed ? 1 : 0;
@@ -145,9 +147,10 @@ Action declare_eval(CLI::App& command) {
                    "finds rigs once more, in even frames alone, and poses them on the odd ones (creatures)");
   command.add_option("--worst", options->worst, "worst frames to list (default: 20)")
       ->check(CLI::Range(0, 10000));
-  command.add_option(
-      "--pictures", files->pictures,
-      "folder for pictures of the worst frames; of a style's figures over those of real clips");
+  command.add_option("--pictures", files->pictures,
+                     "folder for pictures of the worst frames; of a style's figures over those of real "
+                     "clips; of moments of 2D "
+                     "poses by every engine");
   add_scan_options(command, options->edits);
   add_method_options(command, options->how);
   return [options, files] { return eval(*options, files->out, files->pictures); };

@@ -494,7 +494,8 @@ Evaluation evaluate(const EvalOptions& options, const std::function<void(const C
   }
   evaluation.mean = mean_metrics(metrics);
   set_gap_means(evaluation);
-  if (bench.flat) evaluation.flat_engine = flat_engine(options.how);
+  if (bench.flat)
+    evaluation.flat_engine = flat_engine(options.how), evaluation.flat_moments = bench.flat->moments();
   if (bench.style) evaluation.style = bench.style->summary();
   return evaluation;
 }

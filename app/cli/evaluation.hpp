@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "app/cli/flat_pictures.hpp"
 #include "app/cli/options.hpp"
 #include "app/run/breakdown.hpp"
 #include "app/run/latency.hpp"
@@ -34,6 +35,7 @@ struct EvalOptions {
   TempoChoice tempo;       ///< of what is styled
   double legs_m = 0;       ///< of who is to perform it, for the tempo "body"
   int worst = 20;          ///< frames listed as the worst
+  bool pictures = false;   ///< moments of 2D poses are kept for pictures
   ScanEdits edits;         ///< of each scan, before anybody is looked for
   MethodOptions how;
 };
@@ -50,9 +52,10 @@ struct CaseResult {
 struct Evaluation {
   std::vector<CaseResult> results;
   Breakdown breakdown;
-  Json style;               ///< StyleEvaluation::summary()
-  std::string flat_engine;  ///< where cases are 2D poses
-  Metrics mean;             ///< over cases; what GapScore has is of all their gaps alike
+  Json style;                            ///< StyleEvaluation::summary()
+  std::string flat_engine;               ///< where cases are 2D poses
+  std::vector<FlatMoment> flat_moments;  ///< FlatEvaluation::moments()
+  Metrics mean;                          ///< over cases; what GapScore has is of all their gaps alike
   Latency latency;
   bool failed = false;  ///< some case
 };

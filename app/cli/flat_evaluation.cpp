@@ -9,6 +9,7 @@
 #include "retarget/base/error.hpp"
 #include "retarget/base/index.hpp"
 #include "retarget/metrics/keypoint_metrics.hpp"
+#include "retarget/pipeline/method_table.hpp"
 #include "retarget/pose2d/limb_transfer.hpp"
 
 namespace understudy::app {
@@ -105,6 +106,12 @@ void add_figure(Metrics& figures, const char* key, double value) {
   if (std::isfinite(value)) figures.emplace_back(key, value);
 }
 
+/// Each bone's ratio in the first frames.
+Poses by_one_frame(const Poses& source, const Poses& known) {
+  const BoneLengths first = sides_alike(seen_lengths(source[0])), from = (first > 0).select(first, 1.0f);
+  return by_lengths(source, from, target_by_ratio(from, sides_alike(seen_lengths(known[0]))), false);
+}
+
 /// What others do.
 void add_baselines(const Case& c, const Poses& source, const Poses& known, const Poses& truth, Metrics& to) {
   const auto add = [&](const char* key, const Poses& made) {
@@ -119,7 +126,7 @@ void add_baselines(const Case& c, const Poses& source, const Poses& known, const
     const BoneLengths from = (a > 0).select(a, 1.0f);
     return by_lengths(source, from, target_by_ratio(from, b), false);
   };
-  add("oks_one", by_ratio(first, picture));
+  add("oks_one", by_one_frame(source, known));
   add("oks_longest", by_ratio(sides_alike(longest_of(source)), sides_alike(longest_of(known))));
   add("oks_true", by_lengths(source, c.flat->source_lengths, c.flat->target_lengths, false));
 }
@@ -127,9 +134,19 @@ void add_baselines(const Case& c, const Poses& source, const Poses& known, const
 }  // namespace
 
 FlatEvaluation::FlatEvaluation(const EvalOptions& options)
-    : engine_(flat_engine(options.how)), tools_(flat_tools(options.how)) {}
+    : engine_(flat_engine(options.how)), pictures_(options.pictures), tools_(flat_tools(options.how)) {}
 
-void FlatEvaluation::evaluate(const Case& c, CaseResult& result) const {
+void FlatEvaluation::keep_moment(const Case& c, const FlatMoment& moment, size_t frame) {
+  FlatOptions options;
+  options.source.path = c.source, options.target.path = c.target;
+  FlatMoment& kept = moments_.emplace_back(moment);
+  for (const MethodChoice& engine : flat_engines()) {
+    options.engine = engine.name;
+    kept.engines.emplace_back(engine.name, poses_of(perform_flat(options, tools_).result)[frame]);
+  }
+}
+
+void FlatEvaluation::evaluate(const Case& c, CaseResult& result) {
   FlatOptions options;
   options.source.path = c.source, options.target.path = c.target;
   options.engine = engine_, options.touches = false;
@@ -167,6 +184,11 @@ void FlatEvaluation::evaluate(const Case& c, CaseResult& result) const {
   add_figure(figures, "bone_ratio",
              bone_ratio_error(performed.target_lengths.length, c.flat->target_lengths));
   add_baselines(c, source, known, truth, figures);
+  constexpr size_t kMostMoments = 6;
+  if (!pictures_ || known.size() != 1 || moments_.size() >= kMostMoments) return;
+  const size_t middle = source.size() / 2;
+  keep_moment(c, {c.name, source[middle], known[0], truth[middle], by_one_frame(source, known)[middle]},
+              middle);
 }
 
 }  // namespace understudy::app

@@ -2,8 +2,11 @@
 #pragma once
 
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "app/cli/evaluation.hpp"
+#include "app/cli/flat_pictures.hpp"
 #include "app/run/case_folder.hpp"
 #include "retarget/pipeline/keypoint_transfer.hpp"
 
@@ -19,10 +22,17 @@ class FlatEvaluation {
  public:
   /// Throws Error where a network cannot be loaded, and where --engine is for what moves in space.
   explicit FlatEvaluation(const EvalOptions& options);
-  void evaluate(const Case& c, CaseResult& result) const;
+  void evaluate(const Case& c, CaseResult& result);
+  /// Of the first six cases whose target is known from one picture, where pictures are wanted: a moment of each, by
+  /// all engines.
+  const std::vector<FlatMoment>& moments() const { return moments_; }
 
  private:
+  void keep_moment(const Case& c, const FlatMoment& moment, size_t frame);
+
   std::string engine_;
+  bool pictures_;
+  std::vector<FlatMoment> moments_;
   FlatTools tools_;
 };
 

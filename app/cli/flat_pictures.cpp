@@ -12,7 +12,7 @@
 namespace understudy::app {
 namespace {
 
-constexpr int kCellHeight = 250, kColumns = 5;
+constexpr int kCellHeight = 220;
 
 /// Around the poses, as high and wide as a cell.
 FlatBox cell_view(const std::vector<FlatPose>& poses, int width) {
@@ -31,9 +31,9 @@ render::Image alone(const FlatPose& pose, int width) {
 }
 
 render::PictureRow row_of(const FlatMoment& moment, int width) {
-  const FlatPose one = centred_on(moment.one_frame, moment.truth),
-                 ours = centred_on(moment.ours, moment.truth);
-  const FlatBox view = cell_view({moment.truth, one, ours}, width);
+  std::vector<FlatPose> all = {moment.truth, centred_on(moment.one_frame, moment.truth)};
+  for (const auto& [name, pose] : moment.engines) all.push_back(centred_on(pose, moment.truth));
+  const FlatBox view = cell_view(all, width);
   render::PoseCell cell;
   cell.truth = moment.truth;
   render::PictureRow row{moment.name, {alone(moment.source, width), alone(moment.reference, width)}};
@@ -41,11 +41,11 @@ render::PictureRow row_of(const FlatMoment& moment, int width) {
     cell.performer = pose;
     row.pictures.push_back(render::pose_cell(cell, view, width, kCellHeight));
   };
-  add(one);
-  cell.left = one;
-  add(ours);
+  add(all[1]);
+  cell.left = all[1];
+  add(all[2]);
   cell.left.reset();
-  add(ours);
+  for (size_t k = 2; k < all.size(); ++k) add(all[k]);
   return row;
 }
 
@@ -53,18 +53,18 @@ render::PictureRow row_of(const FlatMoment& moment, int width) {
 
 void write_flat_pictures(const std::string& folder, const std::vector<FlatMoment>& moments) {
   if (moments.empty()) return;
+  const auto& engines = moments[0].engines;
+  std::vector<std::string> headers = {"source", "reference", "ratios of one frame",
+                                      "one frame | " + engines[0].first};
+  for (const auto& [name, pose] : engines) headers.push_back(name);
   render::StripOptions options;
-  options.width = 1400;
-  options.columns = kColumns;
-  const int width = render::picture_width(options, kColumns);
+  options.width = 1600;
+  options.columns = static_cast<int>(headers.size());
+  const int width = render::picture_width(options, options.columns);
   std::vector<render::PictureRow> rows;
   for (const FlatMoment& moment : moments) rows.push_back(row_of(moment, width));
   std::filesystem::create_directories(folder);
-  render::write_png(folder + "/flat_cases.png",
-                    render::picture_sheet(rows,
-                                          {"source", "reference", "ratios of one frame",
-                                           "one frame | " + moments[0].engine, moments[0].engine},
-                                          options));
+  render::write_png(folder + "/flat_cases.png", render::picture_sheet(rows, headers, options));
   log::info("wrote " + folder + "/flat_cases.png");
 }
 

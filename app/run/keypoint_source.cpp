@@ -46,7 +46,9 @@ class KeypointSource final : public AnimatedSource {
     for (int64_t frame = 0; frame < ssize(reading.frames); ++frame)
       numbers_.push_back(reading.seconds(frame));
     std::string told;
-    for (const std::string& sentence : reading.told) append_item(told, sentence, "; ");
+    const std::string whose = name_ + ": ";
+    for (const std::string& sentence : reading.told)
+      append_item(told, sentence.rfind(whose, 0) == 0 ? sentence.substr(whose.size()) : sentence, "; ");
     append_item(told,
                 printed("lifted for a person of %g m before a level camera of %g degrees", options.stature,
                         options.fov),

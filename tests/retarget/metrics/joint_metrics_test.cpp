@@ -188,5 +188,15 @@ TEST(Jerk, IsTheThirdDerivativeOfACubic) {
   EXPECT_TRUE(std::isnan(jerk({x[0], x[1], x[2]}, 10)));
 }
 
+TEST(ScaledJoints, HipsLieOnHipsAndTheScaleFitsBest) {
+  Joints truth = Joints::Random();
+  Joints predicted = 3 * truth;
+  predicted.rowwise() += Eigen::RowVector3f(5, -2, 1);
+  EXPECT_LT(mean_joint_error(scaled_joints({predicted}, {truth}), {truth}), 1e-5);
+  Joints moved = truth;
+  moved(Head, 0) += 0.22f;
+  EXPECT_NEAR(mean_joint_error(scaled_joints({moved}, {truth}), {truth}), 0.01, 0.005);
+}
+
 }  // namespace
 }  // namespace understudy
