@@ -23,8 +23,8 @@ class FlatEvaluation {
   /// Throws Error where a network cannot be loaded, and where --engine is for what moves in space.
   explicit FlatEvaluation(const EvalOptions& options);
   void evaluate(const Case& c, CaseResult& result);
-  /// Of the first six cases whose target is known from one picture, where pictures are wanted: a moment of each, by
-  /// all engines.
+  /// Of the first six cases whose target is known from one picture, where pictures are wanted: a moment of
+  /// each, by all engines.
   const std::vector<FlatMoment>& moments() const { return moments_; }
 
  private:

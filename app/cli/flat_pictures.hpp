@@ -17,9 +17,9 @@ struct FlatMoment {
   std::vector<std::pair<std::string, FlatPose>> engines{};  ///< what each makes of it; at least one
 };
 
-/// FOLDER/flat_cases.png: a row each: source, reference, ratios of one frame, those wiped with the first engine, the
-/// engines; all but the first two over the truth in grey, boxes' centres aligned. All moments have the same
-/// engines. Nothing for no moments.
+/// FOLDER/flat_cases.png: a row each: source, reference, ratios of one frame, those wiped with the first
+/// engine, the engines; all but the first two over the truth in grey, boxes' centres aligned. All moments
+/// have the same engines. Nothing for no moments.
 void write_flat_pictures(const std::string& folder, const std::vector<FlatMoment>& moments);
 
 }  // namespace understudy::app

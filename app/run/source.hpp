@@ -1,6 +1,6 @@
 // Where the frames come from: scans on disk, an SMPL-format body that performs an AMASS-format motion, a
-// skeleton that moves (BVH, AMASS-format motion, animated FBX, DAE, GLB, glTF), a blend of such motions, or 2D
-// poses that are lifted.
+// skeleton that moves (BVH, AMASS-format motion, animated FBX, DAE, GLB, glTF), a blend of such motions, or
+// 2D poses that are lifted.
 #pragma once
 
 #include <functional>

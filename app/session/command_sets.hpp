@@ -102,7 +102,8 @@ void set_source(Call& c, SourceOptions source);
 
 /// Opens 2D poses as the source.
 void set_flat_source(Call& c, const std::string& path);
-/// One setting of how a person in a picture performs: "place", "touches", "growth", "engine". Throws Error for another.
+/// One setting of how a person in a picture performs: "place", "touches", "growth", "engine". Throws Error
+/// for another.
 void set_flat(FlatTake& take, const std::string& setting, const ArgumentReader& value);
 /// Exchanges left and right of 2D poses: FIRST LAST [arms|legs|both].
 void exchange_flat_sides(Call& c);

@@ -18,8 +18,8 @@ constexpr int kPersonCodeWidth = 64;    ///< numbers of a person's code
 constexpr int kPersonHidden = 128;      ///< of the layers that make it, and scales and shifts of it
 constexpr float kCodeVariance = 1e-5f;  ///< added to variances
 
-/// Without LibTorch. The answer is the 15 points; the others ride along. Throws Error naming the file when it is
-/// missing, damaged, of another network or of another version.
+/// Without LibTorch. The answer is the 15 points; the others ride along. Throws Error naming the file when
+/// it is missing, damaged, of another network or of another version.
 std::unique_ptr<KeypointTransfer> load_code_transfer(const std::string& path);
 
 }  // namespace understudy::nn

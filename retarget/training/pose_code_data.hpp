@@ -21,7 +21,8 @@ struct PoseCodeBatch {
   int64_t within = 0;    ///< the first so many have A = B
 };
 
-/// As in the paper no motion is ever on two bodies: the pairs that a supervised training would need do not exist.
+/// As in the paper no motion is ever on two bodies: the pairs that a supervised training would need do not
+/// exist.
 class PoseCodeData {
  public:
   static constexpr int kPeople = 64;  ///< half with bones scaled apart
@@ -40,10 +41,10 @@ class PoseCodeData {
   std::vector<Person> people_;
 };
 
-/// On people and motions that nothing was learned from, bones scaled apart (the performer's in every other case),
-/// true lengths told. In the paper's units (table 2): lengths, the mean squared difference of bones' lengths;
-/// angles, that of their directions, rad^2; joints, the mean distance of points, boxes' centres aligned; oks. And
-/// violation, near_kept (% of the source's touches), angles_rad against the source.
+/// On people and motions that nothing was learned from, bones scaled apart (the performer's in every other
+/// case), true lengths told. In the paper's units (table 2): lengths, the mean squared difference of bones'
+/// lengths; angles, that of their directions, rad^2; joints, the mean distance of points, boxes' centres
+/// aligned; oks. And violation, near_kept (% of the source's touches), angles_rad against the source.
 class PoseCodeFigures {
  public:
   PoseCodeFigures(const TrainingData& data, int cases);

@@ -10,7 +10,8 @@ namespace {
 constexpr int kPosePairs = 64, kPoseCodeCases = 500;  // of a step, as in the paper; of a row of the curve
 constexpr double kSamePose = 0.5, kLinks = 300, kAngles = 2;  // section 3.3
 
-/// Section 4: RMSProp at 1e-4, averaged with a weight of 1e-4. The rate falls along a cosine, as all trainings' here.
+/// Section 4: RMSProp at 1e-4, averaged with a weight of 1e-4. The rate falls along a cosine, as all
+/// trainings' here.
 Schedule pose_code_schedule() {
   Schedule schedule;
   schedule.rate = 1e-4;

@@ -1,5 +1,5 @@
-// The networks of Zheng et al. (2021), as they are trained; retarget/networks/code_transfer runs the generator. What
-// the paper does not tell, the sizes and the layers over points, is ours.
+// The networks of Zheng et al. (2021), as they are trained; retarget/networks/code_transfer runs the
+// generator. What the paper does not tell, the sizes and the layers over points, is ours.
 #pragma once
 
 #include <torch/torch.h>
@@ -27,7 +27,8 @@ TORCH_MODULE(CodeLayer);
 class PoseCodeGeneratorImpl : public torch::nn::Module {
  public:
   PoseCodeGeneratorImpl();
-  /// poses [B, 15, 3] (PoseCodeInput), people [B, 14] (PersonCodeInput): [B, 15, 2] x to the right, y up, units.
+  /// poses [B, 15, 3] (PoseCodeInput), people [B, 14] (PersonCodeInput): [B, 15, 2] x to the right, y up,
+  /// units.
   torch::Tensor forward(const torch::Tensor& poses, const torch::Tensor& people);
 
  private:

@@ -11,12 +11,12 @@ namespace understudy::training {
 enum class LinkPairs { Bones, BonesAndEnds, All };
 /// [P, 2] of the first 15 points of BODY_25. Ends: nose, wrists, ankles.
 torch::Tensor link_pairs(LinkPairs which);
-/// [D, 2] unit vectors, half a turn over `count` apart, the first at `first_deg`: 4 at 0 are the projections on
-/// x = 0, y = 0, x = y, x = -y.
+/// [D, 2] unit vectors, half a turn over `count` apart, the first at `first_deg`: 4 at 0 are the projections
+/// on x = 0, y = 0, x = y, x = -y.
 torch::Tensor link_directions(int count, double first_deg);
 
-/// Each of these takes poses [B, 15, 2] and what is made of them, and a mask [B, 15] of the points that count; a mean
-/// over the batch.
+/// Each of these takes poses [B, 15, 2] and what is made of them, and a mask [B, 15] of the points that
+/// count; a mean over the batch.
 
 /// L_VL (eq. 4 and 5), sigma 0.05: sum over directions of the mean over pairs. Points that are near stay so
 /// (squared), others stay in their order with a margin.

@@ -1,4 +1,5 @@
-// Engine `paper`: its losses equation by equation, the network with and without LibTorch, its data, its training.
+// Engine `paper`: its losses equation by equation, the network with and without LibTorch, its data, its
+// training.
 #include <gtest/gtest.h>
 
 #include <cmath>
