@@ -96,7 +96,8 @@ TEST_F(PictureScript, MakesThoseOfStyles) {
 }
 
 TEST_F(PictureScript, MakesThoseOfFlatPeople) {
-  expect_made("flat.sh", {"55_flat_dance", "56_flat_crowd", "57_flat_turn"});
+  expect_made("flat.sh",
+              {"55_flat_dance", "56_flat_crowd", "57_flat_turn", "59_flat_studio", "60_flat_lifted"});
 }
 
 }  // namespace
