@@ -83,7 +83,7 @@ class NetworkLifter final : public Lifter {
     Memory next = *memory_;
     const LiftFrame frame = next.plain.push(pose, dt), mirrored = next.mirrored.push(in_mirror(pose), dt);
     LiftedPose lifted = both_sides(answer(frame, mirrored, next.hidden));
-    lifted.origin = frame.origin, lifted.has_hips = frame.has_hips, lifted.size = frame.size;
+    lifted.origin = frame.origin, lifted.has_hips = frame.sees_hips, lifted.size = frame.size;
     Extraction extraction = next.path.push(lifted, pose, dt);
     memory_ = std::move(next);
     return extraction;

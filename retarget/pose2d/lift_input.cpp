@@ -13,8 +13,21 @@ constexpr int kFewestLifted = 3;
 constexpr float kLiftSizeMemory_s = 2;           // a body seems small for a while, never large
 constexpr float kLiftRate = 30, kWayScale = 10;  // ways are those of a frame at 30 frames/s
 constexpr float kLeastLiftSize = 1e-3f;          // pixels
+constexpr float kTrunkOfNeck = 2.5f, kTrunkOfShoulders = 1.5f,
+                kGuessed = 0.1f;  // a trunk's length; confidence
 
 }  // namespace
+
+void LiftInput::guess_hips(FlatPose& pose) {
+  if (!pose.has(body25::Neck)) return;
+  const auto apart = [&](int a, int b) {
+    return pose.has(a) && pose.has(b) ? (pose.at(a) - pose.at(b)).norm() : 0;
+  };
+  const float upright = std::max(kTrunkOfNeck * apart(body25::Nose, body25::Neck),
+                                 kTrunkOfShoulders * apart(body25::LeftShoulder, body25::RightShoulder));
+  const Vec2 trunk = trunk_.value_or(Vec2(0, upright));
+  if (trunk.norm() > kLeastLiftSize) pose.set(body25::MidHip, pose.at(body25::Neck) + trunk, kGuessed);
+}
 
 LiftFrame LiftInput::push(const FlatPose& seen, float dt) {
   US_CHECK(dt > 0, "the time between two poses must be above 0, not ", dt, " s");
@@ -24,6 +37,9 @@ LiftFrame LiftInput::push(const FlatPose& seen, float dt) {
   US_CHECK(points >= kFewestLifted, "a pose of ", points, " points cannot be lifted: it needs ",
            kFewestLifted);
   US_CHECK(pose.body.allFinite(), "a pose has points that are not finite");
+  const bool sees_hips = pose.has(body25::MidHip);
+  if (sees_hips && pose.has(body25::Neck)) trunk_ = pose.at(body25::MidHip) - pose.at(body25::Neck);
+  if (!sees_hips) guess_hips(pose);
   const float now = size_of(pose);
   US_CHECK(std::isfinite(now) && now > kLeastLiftSize,
            "a pose whose points are all in one place cannot be lifted");
@@ -32,6 +48,7 @@ LiftFrame LiftInput::push(const FlatPose& seen, float dt) {
 
   LiftFrame frame;
   frame.size = size_;
+  frame.sees_hips = sees_hips;
   frame.has_hips = pose.has(body25::MidHip);
   frame.origin = frame.has_hips ? pose.at(body25::MidHip) : Vec2(box_of(pose).center());
   frame.numbers.setZero();

@@ -1,6 +1,8 @@
 // A 2D pose as numbers for the network that lifts it into space, with what the frames before tell.
 #pragma once
 
+#include <optional>
+
 #include "retarget/keypoints/flat_pose.hpp"
 
 namespace understudy {
@@ -14,12 +16,14 @@ constexpr float kLiftPlaceScale = 2;
 
 struct LiftFrame {
   Eigen::Matrix<float, 1, kLiftInputs> numbers;  ///< y up, around `origin`, of `size`
-  Vec2 origin = Vec2::Zero();  ///< the middle of the hips where it is seen, else that of the box; pixels
+  Vec2 origin = Vec2::Zero();  ///< the middle of the hips, seen or guessed, else that of the box; pixels
   float size = 1;              ///< of the person in the last seconds (size_of), pixels
-  bool has_hips = false;       ///< the middle of the hips is seen
+  bool has_hips = false;       ///< the origin is the middle of the hips
+  bool sees_hips = false;      ///< that is not guessed
 };
 
-/// Online: no answer depends on a later frame.
+/// Online: no answer depends on a later frame. Hips that are not seen are guessed: as far from the neck as they
+/// were last, before that as in who stands upright.
 class LiftInput {
  public:
   void reset() { *this = LiftInput(); }
@@ -28,7 +32,10 @@ class LiftInput {
   LiftFrame push(const FlatPose& pose, float dt);
 
  private:
+  void guess_hips(FlatPose& pose);
+
   FlatPose last_;
+  std::optional<Vec2> trunk_;  // from the neck to the hips when both were seen, pixels
   Vec2 last_origin_ = Vec2::Zero();
   float size_ = 0;
   bool has_last_ = false, had_hips_ = false;

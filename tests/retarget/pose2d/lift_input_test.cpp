@@ -27,16 +27,27 @@ TEST(LiftInput, PlaceAndSizeInThePictureChangeNothing) {
   }
 }
 
-TEST(LiftInput, MissingPointsAreZerosAndHipsAreTold) {
+TEST(LiftInput, MissingPointsAreZeros) {
   FlatPose pose = lifted_walk(0, 1).poses[0];
   pose.forget(body25::LeftWrist);
   const LiftFrame whole = LiftInput().push(pose, kDt);
-  EXPECT_TRUE(whole.has_hips);
+  EXPECT_TRUE(whole.has_hips && whole.sees_hips);
   EXPECT_TRUE(whole.numbers.segment<kLiftPointInputs>(kLiftPointInputs * body25::LeftWrist).isZero());
-  for (const int p : {body25::MidHip, body25::LeftHip, body25::RightHip}) pose.forget(p);
-  const LiftFrame cut = LiftInput().push(pose, kDt);
-  EXPECT_FALSE(cut.has_hips);
-  EXPECT_EQ(cut.numbers[kLiftInputs - 1], 0);
+}
+
+TEST(LiftInput, HipsThatAreNotSeenAreGuessedBelowTheNeck) {
+  const FlatPose pose = lifted_walk(0, 1).poses[0];
+  FlatPose cut = pose;
+  for (const int p : {body25::MidHip, body25::LeftHip, body25::RightHip}) cut.forget(p);
+  const float trunk = (pose.at(body25::MidHip) - pose.at(body25::Neck)).norm();
+  const LiftFrame guessed = LiftInput().push(cut, kDt);
+  EXPECT_TRUE(guessed.has_hips && !guessed.sees_hips);
+  EXPECT_LT((guessed.origin - pose.at(body25::MidHip)).norm(), 0.35f * trunk) << "from head and shoulders";
+  LiftInput remembers;
+  remembers.push(pose, kDt);
+  EXPECT_LT((remembers.push(cut, kDt).origin - pose.at(body25::MidHip)).norm(), 0.01f * trunk);
+  cut.forget(body25::Neck), cut.forget(body25::LeftShoulder), cut.forget(body25::RightShoulder);
+  EXPECT_FALSE(LiftInput().push(cut, kDt).has_hips) << "nothing to hang them on";
 }
 
 TEST(LiftInput, WaysAreThoseOfAThirtiethOfASecond) {
