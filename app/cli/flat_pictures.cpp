@@ -32,6 +32,7 @@ render::Image alone(const FlatPose& pose, int width) {
 
 render::PictureRow row_of(const FlatMoment& moment, int width) {
   std::vector<FlatPose> all = {moment.truth, centred_on(moment.one_frame, moment.truth)};
+  all.reserve(2 + moment.engines.size());
   for (const auto& [name, pose] : moment.engines) all.push_back(centred_on(pose, moment.truth));
   const FlatBox view = cell_view(all, width);
   render::PoseCell cell;
@@ -56,12 +57,14 @@ void write_flat_pictures(const std::string& folder, const std::vector<FlatMoment
   const auto& engines = moments[0].engines;
   std::vector<std::string> headers = {"source", "reference", "ratios of one frame",
                                       "one frame | " + engines[0].first};
+  headers.reserve(headers.size() + engines.size());
   for (const auto& [name, pose] : engines) headers.push_back(name);
   render::StripOptions options;
   options.width = 1600;
   options.columns = static_cast<int>(headers.size());
   const int width = render::picture_width(options, options.columns);
   std::vector<render::PictureRow> rows;
+  rows.reserve(moments.size());
   for (const FlatMoment& moment : moments) rows.push_back(row_of(moment, width));
   std::filesystem::create_directories(folder);
   render::write_png(folder + "/flat_cases.png", render::picture_sheet(rows, headers, options));

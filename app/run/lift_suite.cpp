@@ -21,7 +21,7 @@ constexpr float kLiftJitter_m = 0.015f, kLiftNearest_m = 1.5f;
 /// One that nobody comes too near.
 Pinhole lift_view(const std::vector<Pose>& poses, Rng& rng) {
   for (;;) {
-    const Pinhole camera = random_view(middle_of(poses), {}, rng);
+    Pinhole camera = random_view(middle_of(poses), {}, rng);
     const bool is_near = std::any_of(poses.begin(), poses.end(), [&](const Pose& pose) {
       return camera.project(pose.root).z() < kLiftNearest_m;
     });
@@ -72,6 +72,7 @@ NpyArray fov_of(const Pinhole& camera) {
 
 std::vector<Joints> joints_of(const Joints& rest, const std::vector<Pose>& poses) {
   std::vector<Joints> joints;
+  joints.reserve(poses.size());
   for (const Pose& pose : poses) joints.push_back(forward_kinematics(rest, pose).joints);
   return joints;
 }
@@ -112,6 +113,7 @@ int make_lift_suite(const SuiteOptions& options, const std::function<void(const 
     const std::vector<Pose> shown = before(camera, poses);
     const ExactPerson target = shapes.shaped(cast.betas(b));
     std::vector<Rotations> local;
+    local.reserve(shown.size());
     for (const Pose& pose : shown) local.push_back(pose.local);
     Npz truth{{"rotations", rotations_array(local)},
               {"source_joints", frames_array(joints_of(source.rest, shown), {kJointCount, 3})},

@@ -81,7 +81,7 @@ Pinhole view_of(const std::vector<Pose>& poses, Rng& rng) {
   Vec3 middle = Vec3::Zero();
   for (const Pose& pose : poses) middle += pose.root / static_cast<float>(poses.size());
   for (;;) {
-    const Pinhole camera = random_view(middle, {}, rng);
+    Pinhole camera = random_view(middle, {}, rng);
     const bool is_near = std::any_of(poses.begin(), poses.end(), [&](const Pose& pose) {
       return camera.project(pose.root).z() < kNearestLifted;
     });
