@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "retarget/base/error.hpp"
+#include "retarget/keypoints/change_points.hpp"
 
 namespace understudy::render {
 namespace {
@@ -19,15 +20,8 @@ struct CellMap {
 
   Vec2 operator()(const Vec2& at) const { return scale * at + shift; }
   Vec2 back(const Vec2& at) const { return (at - shift) / scale; }
-  void move(FlatPoints& points) const {
-    for (Eigen::Index k = 0; k < points.rows(); ++k)
-      if (points(k, 2) > 0)
-        points.row(k).head<2>() = (*this)(points.row(k).head<2>().transpose()).transpose();
-  }
   FlatPose moved(FlatPose pose) const {
-    for (int k = 0; k < kBodyPoints; ++k)
-      if (pose.has(k)) pose.set(k, (*this)(pose.at(k)), pose.confidence(k));
-    move(pose.left_hand), move(pose.right_hand), move(pose.face);
+    change_points(pose, *this);
     return pose;
   }
 };

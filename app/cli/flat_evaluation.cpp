@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cmath>
 
+#include "app/run/flat_figures.hpp"
 #include "app/run/flat_performance.hpp"
 #include "retarget/base/clock.hpp"
 #include "retarget/base/error.hpp"
@@ -80,17 +81,6 @@ BoneLengths longest_of(const Poses& poses) {
   BoneLengths longest = BoneLengths::Zero();
   for (const FlatPose& pose : poses) longest = longest.max(seen_lengths(pose));
   return longest;
-}
-
-double accelerations(const Poses& poses) {
-  double sum = 0, count = 0;
-  for (size_t t = 2; t < poses.size(); ++t)
-    for (int point = 0; point < kBodyPoints; ++point)
-      if (poses[t].has(point) && poses[t - 1].has(point) && poses[t - 2].has(point)) {
-        const Vec2 change = poses[t].at(point) - 2 * poses[t - 1].at(point) + poses[t - 2].at(point);
-        sum += static_cast<double>(change.norm()), ++count;
-      }
-  return sum / count;
 }
 
 double kept_percent(const Poses& made, double stature, const Poses& source, double source_stature) {
@@ -172,7 +162,7 @@ void FlatEvaluation::evaluate(const Case& c, CaseResult& result) {
              }));
   add_figure(figures, "violation", against_source(order_violation, made));
   add_figure(figures, "angles_rad", against_source(bone_angle_error, made));
-  add_figure(figures, "jitter", accelerations(made) / accelerations(truth));
+  add_figure(figures, "jitter", mean_second_difference(made) / mean_second_difference(truth));
   add_figure(figures, "oks_touches", similarity(touching, truth, source));
   add_figure(figures, "violation_touches", against_source(order_violation, touching));
   add_figure(figures, "violation_truth", against_source(order_violation, truth));

@@ -78,10 +78,6 @@ KeypointReading empty_result(const KeypointReading& source, const FlatTarget& ta
   return result;
 }
 
-}  // namespace
-
-namespace {
-
 KeypointReaderOptions reader_options(const FlatSourceOptions& options, std::string* picture) {
   KeypointReaderOptions reading;
   reading.canvas = options.canvas;

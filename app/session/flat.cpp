@@ -80,9 +80,7 @@ FlatPoses poses_of(const FlatJob& work) {
 
 void read_source(FlatJob& work) {
   if (!work.has_source) return;
-  if (!work.raw) {
-    work.raw = std::make_shared<const KeypointReading>(open_keypoints(work.source));
-  }
+  if (!work.raw) work.raw = std::make_shared<const KeypointReading>(open_keypoints(work.source));
   if (!work.poses) work.poses = std::make_shared<const FlatPoses>(poses_of(work));
 }
 

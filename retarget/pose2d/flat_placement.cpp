@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "retarget/keypoints/change_points.hpp"
+
 namespace understudy {
 namespace {
 
@@ -23,16 +25,6 @@ std::optional<float> lowest_of(const FlatPose& pose, const FlatPose& also) {
 Vec2 middle_of_box(const FlatPose& pose) {
   const FlatBox box = box_of(pose);
   return box.isEmpty() ? Vec2(Vec2::Zero()) : Vec2(box.center());
-}
-
-template <class Change>
-void change_points(FlatPose& pose, const Change& change) {
-  for (int point = 0; point < kBodyPoints; ++point)
-    if (pose.has(point)) pose.set(point, change(pose.at(point)), pose.confidence(point));
-  for (FlatPoints* points : {&pose.left_hand, &pose.right_hand, &pose.face})
-    for (Eigen::Index i = 0; i < points->rows(); ++i)
-      if ((*points)(i, 2) > 0)
-        points->row(i).head<2>() = change(Vec2(points->row(i).head<2>().transpose())).transpose();
 }
 
 }  // namespace

@@ -22,8 +22,8 @@ struct LiftFrame {
   bool sees_hips = false;      ///< that is not guessed
 };
 
-/// Online: no answer depends on a later frame. Hips that are not seen are guessed: as far from the neck as they
-/// were last, before that as in who stands upright.
+/// Online: no answer depends on a later frame. Hips that are not seen are guessed: as far from the neck as
+/// they were last, before that as in who stands upright.
 class LiftInput {
  public:
   void reset() { *this = LiftInput(); }
