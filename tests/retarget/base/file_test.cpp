@@ -2,17 +2,16 @@
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
-#include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <csignal>
 #include <filesystem>
 #include <fstream>
 
 #include "retarget/base/error.hpp"
 #include "retarget/base/part_file.hpp"
+#include "tests/support/full_disk.hpp"
 
 namespace understudy {
 namespace {
@@ -52,6 +51,7 @@ std::string complaint_of(Work work) {
 
 using ReadFile = FileTest;
 using WholeFile = FileTest;
+using WholeFolder = FileTest;
 
 TEST_F(ReadFile, GivesAllBytes) {
   write_file(path("a"), std::string("a\0b", 3));
@@ -130,13 +130,10 @@ TEST_F(WholeFile, NeverReplacesWhatIsNoFile) {
 
 TEST_F(WholeFile, IsAsItWasWhenTheDiskIsFull) {
   write_file(path("a"), "old");
-  struct rlimit before {};
-  ::getrlimit(RLIMIT_FSIZE, &before);
-  std::signal(SIGXFSZ, SIG_IGN);
-  const struct rlimit little = {1000, before.rlim_max};
-  ::setrlimit(RLIMIT_FSIZE, &little);
-  EXPECT_THROW(write_file(path("a"), std::string(100000, 'x')), Error);
-  ::setrlimit(RLIMIT_FSIZE, &before);
+  {
+    const test::FullDisk full(1000);
+    EXPECT_THROW(write_file(path("a"), std::string(100000, 'x')), Error);
+  }
   EXPECT_EQ(read_file(path("a")), "old");
   EXPECT_EQ(names(), std::vector<std::string>{"a"});
 }
@@ -157,6 +154,37 @@ TEST_F(WholeFile, IsRewrittenInItsMiddle) {
   file.write("end\n");
   file.finish();
   EXPECT_EQ(read_file(path("a")), "count: 1\nrow\nend\n");
+}
+
+std::string frame_text(int number) {
+  return std::string(PartFolder::kMark) + " " + std::to_string(number);
+}
+
+TEST_F(WholeFolder, IsThereWithAllFramesOrNotAtAll) {
+  {
+    PartFolder folder(path("frames"));
+    for (int i = 0; i < 3; ++i) folder.add(std::to_string(i), frame_text(i));
+    EXPECT_FALSE(fs::exists(path("frames")));
+    folder.finish();
+  }
+  EXPECT_EQ(names(), std::vector<std::string>{"frames"});
+  EXPECT_EQ(read_file(path("frames/2")), frame_text(2));
+}
+
+TEST_F(WholeFolder, IsAsItWasWhereOneFrameFails) {
+  PartFolder old(path("frames"));
+  old.add("0", frame_text(7));
+  old.finish();
+  EXPECT_THROW(
+      {
+        PartFolder folder(path("frames"));
+        folder.add("0", frame_text(0));
+        const test::FullDisk full(1000);
+        folder.add("1", std::string(100000, 'x'));
+      },
+      Error);
+  EXPECT_EQ(names(), std::vector<std::string>{"frames"});
+  EXPECT_EQ(read_file(path("frames/0")), frame_text(7));
 }
 
 }  // namespace
