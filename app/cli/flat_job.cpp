@@ -3,9 +3,11 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <filesystem>
+#include <optional>
 
 #include "app/run/exports.hpp"
 #include "app/run/keypoint_source.hpp"
+#include "app/run/pose_pictures.hpp"
 #include "app/run/report.hpp"
 #include "retarget/base/error.hpp"
 #include "retarget/base/log.hpp"
@@ -35,11 +37,30 @@ void write_flat_report(const std::string& path, const FlatPerformance& made, con
   write_json(path, json);
 }
 
-/// One line for each frame as it is finished, for programs that follow along.
+/// One line for each frame as it is finished, for programs that follow along; its pictures are there by then.
 void tell_live(const KeypointFrame& frame) {
   std::printf("frame %lld %s\n", static_cast<long long>(frame.number),
               frame.problem.empty() ? "good" : frame.problem.c_str());
   std::fflush(stdout);
+}
+
+/// Of a folder that is still being written; a folder of pictures gets them as they come.
+FlatPerformance follow_and_write(const JobOptions& job, const FlatOptions& flat, const FlatTools& tools) {
+  std::optional<ComingPictures> coming;
+  if (!job.out.empty() && file_suffix(job.out).empty()) coming.emplace(job.out, job.poses);
+  FlatPerformance made = follow_flat(flat, tools, [&](const KeypointReading& one) {
+    if (coming) coming->push(one);
+    tell_live(one.frames[0]);
+  });
+  if (coming) coming->finish(made.result);
+  if (!coming && !job.out.empty()) write_flat(job.out, made.result, job.poses);
+  return made;
+}
+
+FlatPerformance perform_and_write(const JobOptions& job, const FlatOptions& flat, const FlatTools& tools) {
+  FlatPerformance made = perform_flat(flat, tools);
+  if (!job.out.empty()) write_flat(job.out, made.result, job.poses);
+  return made;
 }
 
 }  // namespace
@@ -97,11 +118,10 @@ void run_flat_job(const JobOptions& job, FlatOptions flat) {
            "2D poses have no --preview and no --skeletons: --out writes them");
   const FlatTools tools = flat_tools(job.how);
   const FlatPerformance made =
-      job.source.follow ? follow_flat(flat, tools, tell_live) : perform_flat(flat, tools);
+      job.source.follow ? follow_and_write(job, flat, tools) : perform_and_write(job, flat, tools);
   for (const std::string& sentence : made.told) log::info(sentence);
   if (made.flagged > 0)
     log::warn(grouped(made.flagged) + " frames could not be used and repeat the pose before");
-  if (!job.out.empty()) write_flat(job.out, made.result, job.poses);
   if (!job.report.empty()) write_flat_report(job.report, made, job.how);
 }
 

@@ -64,12 +64,16 @@ std::unique_ptr<KeypointTransfer> made_engine(const FlatOptions& options, const 
   return limbs;
 }
 
+Canvas canvas_of_result(const Canvas& source, const FlatTarget& target, FlatPlace place) {
+  const bool there = place == FlatPlace::Reference && target.standing;
+  return there && target.canvas.is_known() ? target.canvas : source;
+}
+
 KeypointReading empty_result(const KeypointReading& source, const FlatTarget& target, FlatPlace place) {
   KeypointReading result;
   result.format = source.format;
   result.layout = source.layout;
-  const bool there = place == FlatPlace::Reference && target.standing;
-  result.canvas = there && target.canvas.is_known() ? target.canvas : source.canvas;
+  result.canvas = canvas_of_result(source.canvas, target, place);
   result.fps = source.fps;
   result.frames = source.frames;
   for (KeypointFrame& frame : result.frames) frame.problem.clear();
@@ -260,7 +264,7 @@ FlatPerformance perform_flat(const FlatOptions& options, const FlatTools& tools)
 }
 
 FlatPerformance follow_flat(const FlatOptions& options, const FlatTools& tools,
-                            const std::function<void(const KeypointFrame&)>& done) {
+                            const std::function<void(const KeypointReading&)>& done) {
   FlatPerformance made;
   const FlatTarget target = open_flat_target(options.target, *tools.lengths, made.told);
   made.target_lengths = target.lengths;
@@ -276,11 +280,19 @@ FlatPerformance follow_flat(const FlatOptions& options, const FlatTools& tools,
   track.person = 1;
   while (const auto frame = follower.next()) {
     const CleanPose clean = filter.push(frame->pose ? &*frame->pose : nullptr, frame->dt, frame->problem);
+    KeypointReading one;
+    one.fps = follower.fps();
+    one.canvas = canvas_of_result(follower.canvas(), target, options.place);
+    one.frames = {{frame->number, clean.problem}};
+    one.tracks = {{track.person, {}}};
     FlatPose pose = performer.push(clean, frame->dt);
-    if (!is_nobody(pose)) track.poses.push_back({static_cast<int64_t>(frames.size()), 1, std::move(pose)});
-    frames.push_back({frame->number, clean.problem});
+    if (!is_nobody(pose)) {
+      one.tracks[0].poses.push_back({0, 1, pose});
+      track.poses.push_back({static_cast<int64_t>(frames.size()), 1, std::move(pose)});
+    }
+    frames.push_back(one.frames[0]);
     made.flagged += clean.is_usable ? 0 : 1;
-    done(frames.back());
+    done(one);
   }
   check_interrupt("after " + std::to_string(frames.size()) + " frames");
   made.source = follower.finish();

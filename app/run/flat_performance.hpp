@@ -116,9 +116,10 @@ struct FlatPerformance {
 FlatPerformance perform_flat(const FlatOptions& options, const FlatTools& tools);
 
 /// The same of a folder that is still being written; the source's proportions are learned as its frames come.
-/// `done` gets each frame when it is performed, with its problem. Throws Error; also once Ctrl-C was pressed.
+/// `done` gets each frame when it is performed, as a result of one frame, whose canvas is unknown until
+/// something tells it. Throws Error; also once Ctrl-C was pressed.
 FlatPerformance follow_flat(const FlatOptions& options, const FlatTools& tools,
-                            const std::function<void(const KeypointFrame&)>& done);
+                            const std::function<void(const KeypointReading&)>& done);
 
 /// By the suffix: .json, .csv, .npz hold the poses; .mp4 or a folder pictures of them, see
 /// write_pose_pictures. Throws Error naming the path.

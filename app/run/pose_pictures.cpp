@@ -28,9 +28,10 @@ constexpr int kFilmQuality = 8;      // sticks are four pixels wide
 /// An MP4 or a folder of PNGs; there when it is whole.
 class PictureFilm {
  public:
-  PictureFilm(const std::string& path, const Canvas& canvas, double fps) {
+  PictureFilm(const std::string& path, const Canvas& canvas, double fps,
+              PartFolder::Frames appear = PartFolder::Frames::Together) {
     if (is_picture_folder(path)) {
-      folder_ = std::make_unique<PartFolder>(path);
+      folder_ = std::make_unique<PartFolder>(path, appear);
       return;
     }
     render::VideoOptions options;
@@ -82,6 +83,14 @@ void write_poses_beside(const std::string& pictures, const KeypointReading& read
     write_controlnet(path, reading);
   else
     write_openpose_folder(path, reading);
+}
+
+/// All people of a frame.
+render::Image picture_of(const KeypointReading& reading, int64_t frame, const PoseChoice& choice) {
+  std::vector<FlatPose> people;
+  for (const KeypointTrack& track : reading.tracks)
+    if (const FlatPose* pose = track.at(frame)) people.push_back(*pose);
+  return render::pose_picture(people, reading.canvas, choice.drawing);
 }
 
 /// The poses at other moments than those of their frames.
@@ -338,15 +347,57 @@ ExportCost PosePictures::finish() {
 void write_pose_pictures(const std::string& path, const KeypointReading& reading, const PoseChoice& choice) {
   if (file_suffix(path) != ".json") {
     PictureFilm film(path, reading.canvas, reading.fps);
-    for (int64_t frame = 0; frame < static_cast<int64_t>(reading.frames.size()); ++frame) {
-      std::vector<FlatPose> people;
-      for (const KeypointTrack& track : reading.tracks)
-        if (const FlatPose* pose = track.at(frame)) people.push_back(*pose);
-      film.push(render::pose_picture(people, reading.canvas, choice.drawing));
-    }
+    for (int64_t frame = 0; frame < static_cast<int64_t>(reading.frames.size()); ++frame)
+      film.push(picture_of(reading, frame, choice));
     film.finish();
   }
   write_poses_beside(path, reading, choice.file);
+}
+
+class ComingPictures::Files {
+ public:
+  Files(const std::string& folder, const KeypointReading& first, PoseFile file)
+      : film_(folder, first.canvas, first.fps, PartFolder::Frames::AsTheyCome) {
+    if (file == PoseFile::OpenPose)
+      poses_.emplace(pose_file_of(folder, file), PartFolder::Frames::AsTheyCome);
+  }
+  void push(const KeypointReading& one, const PoseChoice& choice) {
+    film_.push(picture_of(one, 0, choice));
+    if (poses_) poses_->add(openpose_file_name(poses_->path(), one.frames[0].number), openpose_json(one, 0));
+  }
+  void finish() {
+    film_.finish();
+    if (poses_) poses_->finish();
+  }
+
+ private:
+  PictureFilm film_;
+  std::optional<PartFolder> poses_;
+};
+
+ComingPictures::ComingPictures(std::string folder, const PoseChoice& choice)
+    : folder_(std::move(folder)), choice_(choice) {}
+ComingPictures::~ComingPictures() = default;
+
+void ComingPictures::push(const KeypointReading& one) {
+  waiting_.push_back(one);
+  if (one.canvas.is_known()) write(one.canvas);
+}
+
+void ComingPictures::write(const Canvas& canvas) {
+  for (KeypointReading& one : waiting_) {
+    one.canvas = canvas;
+    if (!files_) files_ = std::make_unique<Files>(folder_, one, choice_.file);
+    files_->push(one, choice_);
+  }
+  waiting_.clear();
+}
+
+void ComingPictures::finish(const KeypointReading& all) {
+  write(all.canvas);
+  US_CHECK(files_, folder_, ": there are no frames to write");
+  files_->finish();
+  if (choice_.file == PoseFile::ControlNet) write_poses_beside(folder_, all, choice_.file);
 }
 
 bool is_picture_folder(const std::string& path) {

@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "app/run/exports.hpp"
 #include "app/run/pose_choice.hpp"
@@ -22,6 +23,27 @@ std::unique_ptr<MotionOutput> open_pose_pictures(const std::string& path, const 
 
 /// Of poses that are flat already: the same files, on the reading's canvas at its rate. Throws Error.
 void write_pose_pictures(const std::string& path, const KeypointReading& reading, const PoseChoice& choice);
+
+/// The same of a folder whose frames still come: each picture, and each file of OpenPose, is there as soon as
+/// its frame is; the list that ControlNet reads at the end.
+class ComingPictures {
+ public:
+  ComingPictures(std::string folder, const PoseChoice& choice);
+  ~ComingPictures();
+  /// A reading of one frame. It waits until a canvas is known. Throws Error; what was written stays.
+  void push(const KeypointReading& one);
+  /// All frames at once, for what is one file. Throws Error.
+  void finish(const KeypointReading& all);
+
+ private:
+  class Files;
+  void write(const Canvas& canvas);
+
+  std::string folder_;
+  PoseChoice choice_;
+  std::vector<KeypointReading> waiting_;
+  std::unique_ptr<Files> files_;  // none before the first frame
+};
 
 /// Whether such a path is a folder.
 bool is_picture_folder(const std::string& path);

@@ -128,12 +128,14 @@ void check_writable(const std::string& path) {
   if (!path.empty()) const PartFile made_and_removed(path);
 }
 
-PartFolder::PartFolder(const std::string& path) : path_(folder_name(path)), part_(path_ + ".part") {
+PartFolder::PartFolder(const std::string& path, Frames appear)
+    : path_(folder_name(path)), part_(path_ + (appear == Frames::Together ? ".part" : "")) {
   US_CHECK(!path_.empty(), "a folder without a name cannot be written");
   check_replaceable(path_, part_);
   std::error_code error;
   fs::remove_all(part_, error);
   US_CHECK(fs::create_directories(part_, error) && !error, path_, ": cannot be written");
+  finished_ = part_ == path_;  // nothing is to be moved or removed
 }
 
 PartFolder::~PartFolder() {
@@ -142,6 +144,7 @@ PartFolder::~PartFolder() {
 }
 
 void PartFolder::add(const std::string& name, std::string_view bytes) {
+  if (finished_) return write_file(part_ + "/" + name, bytes, /*synced=*/false);
   std::ofstream file(part_ + "/" + name, std::ios::binary);
   file.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
   file.close();
@@ -149,10 +152,11 @@ void PartFolder::add(const std::string& name, std::string_view bytes) {
 }
 
 void PartFolder::finish() {
+  sync_to_disk(part_, path_);
+  if (finished_) return;
   US_CHECK(replaceable(path_), path_, ": something else was put there meanwhile");
   const std::string old = path_ + ".old.part";
   std::error_code error;
-  sync_to_disk(part_, path_);
   fs::remove_all(old, error);
   const bool was_there = fs::exists(path_);
   if (was_there) fs::rename(path_, old, error);

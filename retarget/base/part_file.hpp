@@ -44,27 +44,28 @@ void write_file(const std::string& path, std::string_view bytes, bool synced = t
 /// Throws Error when a file cannot be written there; changes nothing. An empty path is good.
 void check_writable(const std::string& path);
 
-/// The same of a folder of frames: `FOLDER.part` is synced and takes the place of `FOLDER` at the end. A
-/// folder that is there already is replaced only where it is empty or holds nothing but frames written so
-/// before.
+/// The same of a folder of frames: `FOLDER.part` is synced and takes the place of `FOLDER` at the end; or,
+/// where somebody waits for each frame, every file appears whole at once and stays whatever comes. A folder
+/// that is there already is replaced only where it is empty or holds nothing but frames written so before.
 class PartFolder {
  public:
+  enum class Frames { Together, AsTheyCome };
   /// Every file in it must have this among its first 200 bytes.
   static constexpr const char* kMark = "a frame exported by Understudy";
   /// Throws Error naming the folder when it holds anything else, or cannot be made.
-  explicit PartFolder(const std::string& path);
+  explicit PartFolder(const std::string& path, Frames appear = Frames::Together);
   ~PartFolder();
   PartFolder(const PartFolder&) = delete;
   PartFolder& operator=(const PartFolder&) = delete;
 
   /// Writes one file; throws Error when the disk is full.
   void add(const std::string& name, std::string_view bytes);
-  /// Throws Error; then the folder that was there is as it was.
+  /// Throws Error; then the folder that was there is as it was, unless frames appear as they come.
   void finish();
   const std::string& path() const { return path_; }
 
  private:
-  std::string path_, part_;
+  std::string path_, part_;  // the same where frames appear as they come
   bool finished_ = false;
 };
 

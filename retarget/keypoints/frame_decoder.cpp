@@ -168,6 +168,11 @@ FrameDecoder::Scale FrameDecoder::scale_of(const RawFrame& frame, bool all_are_s
   return facts_.may_be_signed && lowest < 0 ? Scale::Signed : Scale::Fractions;
 }
 
+Canvas FrameDecoder::canvas() const {
+  std::string from;
+  return decided_ ? decided_->canvas : canvas_for({}, from);
+}
+
 Canvas FrameDecoder::canvas_for(const RawFrame& frame, std::string& from) const {
   from = "as asked";
   if (options_.canvas.is_known()) return options_.canvas;

@@ -31,6 +31,8 @@ class FrameDecoder : public RawSink {
 
   // While frames come.
   double fps() const { return fps_; }
+  /// Unknown where nothing told it yet.
+  Canvas canvas() const;
   int64_t frame_count() const { return static_cast<int64_t>(frames_.size()); }
   /// Of the last frame; empty: it could be read.
   std::string last_problem() const { return frames_.empty() ? "" : frames_.back().problem; }

@@ -55,6 +55,7 @@ class KeypointFollower::Folder {
     return frame;
   }
   double fps() const { return decoder_.fps(); }
+  Canvas canvas() const { return decoder_.canvas(); }
   KeypointReading finish() {
     KeypointReading reading = decoder_.finish();
     if (performer_) reading.performer = std::max(reading.track_of(*performer_), 0);
@@ -188,6 +189,9 @@ std::optional<FollowedPose> KeypointFollower::next() {
 }
 double KeypointFollower::fps() const {
   return folder_->fps();
+}
+Canvas KeypointFollower::canvas() const {
+  return folder_->canvas();
 }
 KeypointReading KeypointFollower::finish() {
   return folder_->finish();

@@ -38,6 +38,8 @@ class KeypointFollower {
   std::optional<FollowedPose> next();
   /// Frames per second.
   double fps() const;
+  /// Of the pictures; unknown where nothing told it yet.
+  Canvas canvas() const;
   /// All frames that were handed out, and what was decided: as read_keypoints gives it. Throws as that. Once.
   KeypointReading finish();
 

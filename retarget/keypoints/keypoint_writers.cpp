@@ -148,6 +148,10 @@ std::string openpose_json(const KeypointReading& reading, int64_t frame) {
   return openpose_text(people_in(reading, frame));
 }
 
+std::string openpose_file_name(const std::string& folder, int64_t number) {
+  return file_name(folder) + printed("_%012lld_keypoints.json", static_cast<long long>(number));
+}
+
 std::string controlnet_json(const KeypointReading& reading, int64_t frame) {
   return controlnet_text(people_in(reading, frame), reading.canvas);
 }
@@ -156,11 +160,8 @@ void write_openpose_folder(const std::string& folder, const KeypointReading& rea
   check_frames(reading, folder);
   PartFolder files(folder);
   const std::vector<SeenInFrame> frames = people_of_frames(reading);
-  for (size_t frame = 0; frame < frames.size(); ++frame) {
-    const auto number = static_cast<long long>(reading.frames[frame].number);
-    files.add(file_name(files.path()) + printed("_%012lld_keypoints.json", number),
-              openpose_text(frames[frame]));
-  }
+  for (size_t frame = 0; frame < frames.size(); ++frame)
+    files.add(openpose_file_name(files.path(), reading.frames[frame].number), openpose_text(frames[frame]));
   files.finish();
 }
 

@@ -23,8 +23,9 @@ void write_keypoint_csv(const std::string& path, const KeypointReading& reading)
 /// fps, layout (BODY_25, with hands and face where anybody has them). Nothing is lost.
 void write_keypoint_npz(const std::string& path, const KeypointReading& reading);
 
-/// One frame of `write_openpose_folder` and of `write_controlnet`, as text.
+/// One frame of `write_openpose_folder` and of `write_controlnet`, as text, and the former's file.
 std::string openpose_json(const KeypointReading& reading, int64_t frame);
+std::string openpose_file_name(const std::string& folder, int64_t number);
 std::string controlnet_json(const KeypointReading& reading, int64_t frame);
 
 }  // namespace understudy

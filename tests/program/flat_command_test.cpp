@@ -1,9 +1,11 @@
 // 2D poses by the shipped program: `retarget` onto a person in a picture, the suites and their evaluation.
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <thread>
 
 #include "retarget/base/file.hpp"
 #include "retarget/base/part_file.hpp"
+#include "retarget/base/text.hpp"
 #include "retarget/keypoints/keypoint_reader.hpp"
 #include "retarget/keypoints/keypoint_writers.hpp"
 #include "retarget/pose2d/flat_placement.hpp"
@@ -98,6 +100,36 @@ TEST_F(FlatCommand, AFolderThatIsBeingWrittenIsFollowed) {
                         file = read_keypoints(scratch.path("file.json"));
   ASSERT_EQ(live.frames.size(), 8u);
   for (int64_t t = 0; t < 8; ++t) EXPECT_EQ(*live.performing().at(t), *file.performing().at(t)) << t;
+}
+
+TEST_F(FlatCommand, PicturesOfAFolderThatIsBeingWrittenAreThereAsTheirFramesCome) {
+  const std::string live = scratch.path("live");
+  std::filesystem::create_directories(live);
+  const std::string pictures = out("frames/"), poses = out("frames_openpose/frames_openpose");
+  std::vector<bool> was_there;
+  std::thread detector([&] {
+    for (int t = 0; t < 6; ++t) {
+      const std::string name = printed("_%012d_keypoints.json", t);
+      write_file(live + "/live" + name, read_file(scratch.path("track/track" + name)));
+      if (t == 0) continue;  // a frame is whole when the next one is there
+      const auto is_there = [&] {
+        return std::filesystem::exists(pictures + printed("frame_%05d.png", t - 1)) &&
+               std::filesystem::exists(poses + printed("_%012d_keypoints.json", t - 1));
+      };
+      for (int i = 0; i < 2000 && !is_there(); ++i)
+        std::this_thread::sleep_for(std::chrono::milliseconds(10));
+      was_there.push_back(is_there());
+    }
+    write_file(live + "/done", "");
+  });
+  const Finished done = run_program({"retarget", "--source", live, "--target", scratch.path("reference.json"),
+                                     "--out", out("frames"), "--follow", "--pose-file", "openpose"});
+  detector.join();
+  ASSERT_EQ(done.code, 0) << done.err;
+  EXPECT_EQ(was_there, std::vector<bool>(5, true));
+  ASSERT_EQ(perform({"--out", out("at_once"), "--no-look-ahead"}).code, 0);
+  for (const char* name : {"frame_00000.png", "frame_00005.png"})
+    EXPECT_EQ(read_file(pictures + name), read_file(out("at_once/") + name)) << name;
 }
 
 TEST_F(FlatCommand, OddReferencesAreToldInASentence) {

@@ -187,5 +187,23 @@ TEST_F(WholeFolder, IsAsItWasWhereOneFrameFails) {
   EXPECT_EQ(read_file(path("frames/0")), frame_text(7));
 }
 
+TEST_F(WholeFolder, ShowsEachFrameAtOnceWhereAskedAndKeepsItWhenALaterOneFails) {
+  PartFolder old(path("frames"));
+  old.add("9", frame_text(9));
+  old.finish();
+  {
+    PartFolder folder(path("frames"), PartFolder::Frames::AsTheyCome);
+    folder.add("0", frame_text(0));
+    EXPECT_EQ(read_file(path("frames/0")), frame_text(0));
+    const test::FullDisk full(1000);
+    EXPECT_THROW(folder.add("1", std::string(100000, 'x')), Error);
+  }
+  EXPECT_EQ(names(), std::vector<std::string>{"frames"});
+  EXPECT_EQ(read_file(path("frames/0")), frame_text(0));
+  for (const char* name : {"1", "9"}) EXPECT_FALSE(fs::exists(path(std::string("frames/") + name)));
+  std::ofstream(path("frames/mine")) << "not ours";
+  EXPECT_NE(complaint_of([&] { PartFolder(path("frames"), PartFolder::Frames::AsTheyCome); }), "");
+}
+
 }  // namespace
 }  // namespace understudy
