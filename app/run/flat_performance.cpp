@@ -268,7 +268,7 @@ FlatPerformance follow_flat(const FlatOptions& options, const FlatTools& tools,
   FlatPerformance made;
   const FlatTarget target = open_flat_target(options.target, *tools.lengths, made.told);
   made.target_lengths = target.lengths;
-  KeypointFollowOptions follow;
+  FolderFollowOptions follow;
   follow.cancelled = interrupted;
   KeypointFollower follower(options.source.path, reader_options(options.source, nullptr), follow);
   KeypointFilterOptions filtering;

@@ -1,55 +1,28 @@
 #include "retarget/keypoints/keypoint_follower.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <deque>
-#include <filesystem>
-#include <thread>
 
 #include "retarget/base/error.hpp"
+#include "retarget/base/text.hpp"
 #include "retarget/formats/scan_frames.hpp"
 #include "retarget/keypoints/frame_decoder.hpp"
 #include "retarget/keypoints/pose_files.hpp"
 #include "retarget/keypoints/pose_json.hpp"
 
 namespace understudy {
-namespace fs = std::filesystem;
-namespace {
-
-using Clock = std::chrono::steady_clock;
-
-// Size and time of change: two equal looks mean that nobody wrote in between. Size 0: there is no such file.
-using FileState = std::pair<uintmax_t, fs::file_time_type>;
-
-FileState state_of(const std::string& path) {
-  std::error_code no_size, no_time;
-  const FileState state{fs::file_size(path, no_size), fs::last_write_time(path, no_time)};
-  return no_size || no_time ? FileState() : state;
-}
-
-}  // namespace
 
 class KeypointFollower::Folder {
  public:
-  Folder(std::string path, const KeypointReaderOptions& options, KeypointFollowOptions follow)
-      : path_(std::move(path)),
+  Folder(const std::string& path, const KeypointReaderOptions& options, const FolderFollowOptions& follow)
+      : path_(path),
         person_(options.person),
-        follow_(std::move(follow)),
-        decoder_(path_, without_person(options), picture_of_folder(path_, options)),
-        last_news_(Clock::now()) {
-    pose_files_of(path_);  // throws when it cannot be read
-  }
+        files_(path, follow, poses_among),
+        decoder_(path, without_person(options), picture_of_folder(path, options)) {}
 
   std::optional<FollowedPose> next() {
-    while (ready_.empty() && !ended_) {
-      if (follow_.cancelled && follow_.cancelled()) break;
-      if (look()) continue;
-      if (!ended_) std::this_thread::sleep_for(std::chrono::duration<double>(follow_.poll_s));
-    }
-    if (ready_.empty()) {
-      ended_ = true;
-      return {};
-    }
+    while (ready_.empty())
+      if (!take()) return {};
     FollowedPose frame = std::move(ready_.front());
     ready_.pop_front();
     return frame;
@@ -63,81 +36,57 @@ class KeypointFollower::Folder {
   }
 
  private:
+  static std::vector<std::string> poses_among(std::vector<std::string> names) {
+    names.erase(std::remove_if(names.begin(), names.end(),
+                               [](const std::string& name) { return file_suffix(name) != ".json"; }),
+                names.end());
+    return names;
+  }
   // Who performs may come later: until then nobody does.
   static KeypointReaderOptions without_person(KeypointReaderOptions options) {
     options.person.reset();
     return options;
   }
 
-  /// True: something happened.
-  bool look() {
-    if (waiting_.size() < 2) {
-      const auto names = pose_files_of(path_);
-      waiting_.assign(std::upper_bound(names.begin(), names.end(), last_name_, natural_less), names.end());
-    }
-    std::error_code error;
-    const bool done =
-        fs::exists(fs::path(path_) / "done", error) || fs::exists(fs::path(path_) / ".done", error);
-    const double idle = std::chrono::duration<double>(Clock::now() - last_news_).count();
-    const bool late = idle >= follow_.timeout_s;
-    if (waiting_.empty()) {
-      US_CHECK(!late || handed_out_ > 0, path_, ": no frame came within ", follow_.timeout_s, " s");
-      US_CHECK(!done || handed_out_ > 0, path_, ": holds no frames");
-      ended_ = done || late;
-      return ended_;
-    }
-    const bool written = done || late || waiting_.size() > 1;
-    if (!written && !stands_still((fs::path(path_) / waiting_.front()).string())) return false;
-    return take(written);
-  }
-
-  bool stands_still(const std::string& path) {
-    const FileState now = state_of(path);
-    const bool still = path == watched_ && now == state_ && now.first > 0;
-    watched_ = path;
-    state_ = now;
-    return still;
-  }
-
-  /// A file that cannot be read may still be growing, unless its writer has gone on.
-  bool take(bool written) {
-    const std::string name = waiting_.front(), path = (fs::path(path_) / name).string();
-    const int64_t number = frame_number(name).value_or(handed_out_);
+  /// False: the folder has ended.
+  bool take() {
     RawFrame raw;
     RawFacts facts;
-    const std::string problem = failure_of([&] { raw = read_pose_file(path, number, facts); });
-    if (!written && !problem.empty()) return false;
-    waiting_.pop_front();
-    last_name_ = name;
-    last_news_ = Clock::now();
+    std::string problem;
+    const auto file = files_.next([&](const FollowedFile& read) {
+      problem = failure_of([&] { raw = read_pose_file(read.path, read.number, facts); });
+      return problem.empty();
+    });
+    if (!file) return false;
     const int64_t before = decoder_.frame_count();
-    decoder_.frame(number, [&]() -> RawFrame {
+    decoder_.frame(file->number, [&]() -> RawFrame {
       US_CHECK(problem.empty(), problem);
       decoder_.begin(facts);
       return raw;
     });
-    if (decoder_.frame_count() == before) return true;  // it is there twice, which the reading tells
-    note_gap(number);
-    hand_out(number);
+    if (decoder_.frame_count() == before) {
+      files_.forget_last();  // it is there twice, which the reading tells
+      return true;
+    }
+    hand_out(file->number, note_gap(*file));
     return true;
   }
 
-  void note_gap(int64_t number) {
-    if (handed_out_ == 1) step_ = number - number_;
-    if (handed_out_ < 2) return;
-    const int64_t missing = missing_between(number - number_, step_);
-    for (int64_t k = 1; k <= missing && missing <= kLongestGap; ++k) {
-      const int64_t left_out = number_ + k * step_;
-      ready_.push_back(
-          {left_out, static_cast<double>(step_) / fps(), {}, frame_of(path_, left_out) + " is missing"});
+  /// The number of the last frame before the file, handed out or missing.
+  int64_t note_gap(const FollowedFile& file) {
+    if (file.missing == 0 || file.missing > kLongestGap) return number_;
+    const double dt = static_cast<double>(file.step) / fps();
+    for (int64_t k = 1; k <= file.missing; ++k) {
+      const int64_t left_out = file.last_number + k * file.step;
+      ready_.push_back({left_out, dt, {}, frame_of(path_, left_out) + " is missing"});
     }
-    if (missing > 0 && missing <= kLongestGap) number_ += missing * step_;
+    return file.last_number + file.missing * file.step;
   }
 
-  void hand_out(int64_t number) {
+  void hand_out(int64_t number, int64_t before) {
     FollowedPose frame;
     frame.number = number;
-    frame.dt = static_cast<double>(handed_out_ > 0 ? number - number_ : 1) / fps();
+    frame.dt = static_cast<double>(decoder_.frame_count() > 1 ? number - before : 1) / fps();
     frame.problem = decoder_.last_problem();
     if (!performer_) performer_ = choose();
     const int64_t at = decoder_.frame_count() - 1;
@@ -150,7 +99,6 @@ class KeypointFollower::Folder {
                                        std::to_string(number)
                                  : "nobody is seen in frame " + std::to_string(number);
     number_ = number;
-    ++handed_out_;
     ready_.push_back(std::move(frame));
   }
 
@@ -168,19 +116,14 @@ class KeypointFollower::Folder {
 
   std::string path_;
   std::optional<int64_t> person_, performer_;
-  KeypointFollowOptions follow_;
+  FolderFollower files_;
   FrameDecoder decoder_;
-  std::deque<std::string> waiting_;
   std::deque<FollowedPose> ready_;
-  std::string last_name_, watched_;
-  FileState state_;
-  int64_t number_ = 0, step_ = 1, handed_out_ = 0;
-  Clock::time_point last_news_;
-  bool ended_ = false;
+  int64_t number_ = 0;
 };
 
 KeypointFollower::KeypointFollower(const std::string& folder, const KeypointReaderOptions& options,
-                                   const KeypointFollowOptions& follow)
+                                   const FolderFollowOptions& follow)
     : folder_(std::make_unique<Folder>(folder, options, follow)) {}
 KeypointFollower::~KeypointFollower() = default;
 

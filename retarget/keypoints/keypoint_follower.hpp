@@ -1,20 +1,14 @@
 // A folder of 2D poses that a detector is still writing, frame by frame.
 #pragma once
 
-#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
 
+#include "retarget/formats/folder_follower.hpp"
 #include "retarget/keypoints/keypoint_reader.hpp"
 
 namespace understudy {
-
-struct KeypointFollowOptions {
-  double timeout_s = 10;            ///< the folder ends when no new frame came for so long
-  double poll_s = 0.03;             ///< between two looks
-  std::function<bool()> cancelled;  ///< asked at every look; true ends the folder
-};
 
 /// A frame as it came.
 struct FollowedPose {
@@ -24,15 +18,14 @@ struct FollowedPose {
   std::string problem;           ///< why there is none, one sentence
 };
 
-/// Hands out one JSON after the other, each as soon as it is whole: a later one is there, or nobody wrote to
-/// it between two looks and it can be read. Numbers that are left out come as frames that are missing. A
-/// file `done` or `.done` ends the folder. Who performs is the person asked for; else the largest in the
+/// Hands out one JSON after the other, each as soon as it is whole, as FolderFollower tells. Numbers that are
+/// left out come as frames that are missing. Who performs is the person asked for; else the largest in the
 /// first frame with anybody, as nobody knows yet who is seen longest. One thread at a time.
 class KeypointFollower {
  public:
   /// Throws Error when the folder cannot be read.
   KeypointFollower(const std::string& folder, const KeypointReaderOptions& options,
-                   const KeypointFollowOptions& follow = {});
+                   const FolderFollowOptions& follow = {});
   ~KeypointFollower();
   /// None at the end. Throws Error where no frame came at all.
   std::optional<FollowedPose> next();

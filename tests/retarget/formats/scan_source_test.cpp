@@ -354,6 +354,16 @@ TEST(ScanSource, FollowFlagsAFrameThatStayedBrokenAndReportsGaps) {
   EXPECT_EQ(source.gaps()[0].last, 4);
 }
 
+TEST(ScanSource, FollowTakesNumbersThatAreThereTwice) {
+  const TempFolder folder;
+  for (const char* name : {"a1.off", "b1.off", "c2.off"}) folder.write(name, cloud(0));
+  folder.write("done", "");
+  ScanSource source(folder.path(), follow_for(2));
+  int frames = 0;
+  while (source.next()) ++frames;
+  EXPECT_EQ(frames, 3);
+}
+
 TEST(ScanSource, FollowCanBeCancelled) {
   const TempFolder folder;
   ScanSourceOptions options = follow_for(100);

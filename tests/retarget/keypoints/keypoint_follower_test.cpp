@@ -19,8 +19,8 @@ class KeypointFollowing : public ::testing::Test {
     folder_.write("p/f_" + std::to_string(number) + ".json", openpose_frame(people).dump());
   }
   static FlatPose bob(float x = 300) { return standing({x, 400}, 300); }
-  static KeypointFollowOptions quick(double timeout_s = 0.4) {
-    KeypointFollowOptions options;
+  static FolderFollowOptions quick(double timeout_s = 0.4) {
+    FolderFollowOptions options;
     options.timeout_s = timeout_s, options.poll_s = 0.005;
     return options;
   }
@@ -92,6 +92,33 @@ TEST_F(KeypointFollowing, NumbersThatAreLeftOutTakeTheirTime) {
   EXPECT_NEAR(seconds, 5 * kFrame, 1e-9);
 }
 
+TEST_F(KeypointFollowing, AFileThatIsThereTwiceCountsOnce) {
+  for (const int number : {0, 1, 2}) write(number, {bob()});
+  folder_.write("p/f_1_0.json", openpose_frame({bob(500)}).dump());  // sorted behind f_1, numbered before it
+  folder_.write("p/done", "");
+  KeypointFollower follower(poses(), {}, quick(20));
+  std::vector<int64_t> numbers;
+  while (const auto frame = follower.next()) {
+    numbers.push_back(frame->number);
+    EXPECT_EQ(frame->pose, bob());
+  }
+  EXPECT_EQ(numbers, (std::vector<int64_t>{0, 1, 2}));
+}
+
+TEST_F(KeypointFollowing, AFileThatComesAfterItsSuccessorFindsItsPlace) {
+  for (const int number : {0, 1, 3}) write(number, {bob()});
+  std::thread writer([this] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    write(2, {bob()});
+    folder_.write("p/done", "");
+  });
+  KeypointFollower follower(poses(), {}, quick(20));
+  std::vector<bool> seen;
+  while (const auto frame = follower.next()) seen.push_back(frame->pose.has_value());
+  writer.join();
+  EXPECT_EQ(seen, std::vector<bool>(4, true));
+}
+
 TEST_F(KeypointFollowing, TheLargestOfTheFirstFrameOrWhoIsAskedForPerforms) {
   const FlatPose small = standing({100, 300}, 100);
   for (const int number : {0, 1, 2}) write(number, {small, bob()});
@@ -108,7 +135,7 @@ TEST_F(KeypointFollowing, AFolderThatNeverGetsAFrameIsAnError) {
 }
 
 TEST_F(KeypointFollowing, EndsWhenItIsCancelled) {
-  KeypointFollowOptions options = quick(1000);
+  FolderFollowOptions options = quick(1000);
   options.cancelled = [] { return true; };
   EXPECT_FALSE(KeypointFollower(poses(), {}, options).next());
 }
