@@ -1,15 +1,9 @@
 #!/bin/bash
 # screenshots/bones.sh [WHAT...]: makes the pictures of found bones in this folder, 34 to 46. WHAT: a kind of creature, person, edit
 # (before and after), gait (one animal's on another), three (a found rig in three.js), real; without one all but that.
-# Needs build/understudy, and what ./test installs (chromium, npm packages).
 # real: of a real sequence in the folder $REAL; its picture and rig go to out/bones.
-set -euo pipefail
-cd "$(dirname "$0")/.."
-understudy=$PWD/build/understudy
+. "$(dirname "$0")/common.sh"
 kinds=(arm lamp excavator hand quadruped insect bird snake)
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
-
 # scans_of SUITE KIND: the folder of a made case, for as many cases as show all kinds once.
 scans_of() {
   [ -d "$work/$1" ] || "$understudy" cases --suite "$1" --out "$work/$1" --cases ${#kinds[@]} --frames 24 --points 5000 >&2
@@ -22,17 +16,16 @@ found() {
   "$understudy" discover --source "$work/$1" "${@:3}" --out "$work/$1.glb" --preview "$work/$1.png"
 }
 
-# shown PICTURE NAME: into this folder, smaller.
-shown() {
+# shown_as PICTURE NAME: the same under another name.
+shown_as() {
   mv "$work/$1.png" "$work/$2.png"
-  node screenshots/smaller.mjs chromium 1200 "$work/$2.png"
-  mv "$work/$2.webp" screenshots/
+  shown "$2" 1200
 }
 
 edit() {
   "$understudy" play screenshots/edit_bones.us --out "$work"
-  shown before 43_bones_before
-  shown after 44_bones_after
+  shown_as before 43_bones_before
+  shown_as after 44_bones_after
 }
 
 gait() {
@@ -41,7 +34,7 @@ gait() {
   found one "$pair/source"
   found other "$pair/target"
   "$understudy" discover --rig "$work/one.glb" --perform "$work/other.glb" --out "$work/gait.glb" --preview "$work/gait.png"
-  shown gait 45_gait
+  shown_as gait 45_gait
 }
 
 three() {
@@ -62,7 +55,7 @@ for what in "$@"; do
   case $what in
     person)
       found person assets/samples/scan --remove-floor --largest-part
-      shown person 42_bones_person
+      shown_as person 42_bones_person
       ;;
     edit | gait | three | real) $what ;;
     *)
@@ -73,7 +66,7 @@ for what in "$@"; do
       done
       [ "$number" -lt $((34 + ${#kinds[@]})) ] || { echo "bones.sh: no picture is called '$what'" >&2; exit 2; }
       found "$what" "$(scans_of creatures "$what")/source"
-      shown "$what" "${number}_bones_$what"
+      shown_as "$what" "${number}_bones_$what"
       ;;
   esac
 done

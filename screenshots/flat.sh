@@ -1,22 +1,10 @@
 #!/bin/bash
 # screenshots/flat.sh [WHAT...]: makes the pictures of 2D poses in this folder, 55 to 60. WHAT: dance (55), crowd (56), turn (57),
 # engines (58), studio (59), lifted (60); without one all.
-# Needs build/understudy, or $UNDERSTUDY, and what ./test installs (node, chromium). With the folder $OUT it makes PNGs there,
-# as tests do. DATA: a data folder (see train --data) whose CMU dance turns in picture 57, and whose people are in 58; without
+# DATA: a data folder (see train --data) whose CMU dance turns in picture 57, and whose people are in 58; without
 # it there is no 58, and the built-in dance in 57.
-set -euo pipefail
-cd "$(dirname "$0")/.."
-understudy=${UNDERSTUDY:-$PWD/build/understudy}
+. "$(dirname "$0")/common.sh"
 samples=$PWD/assets/samples
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
-
-# shown NAME WIDTH: from $work/NAME.png into this folder, smaller.
-shown() {
-  [ -z "${OUT:-}" ] || { cp "$work/$1.png" "$OUT/"; return; }
-  node screenshots/smaller.mjs chromium "$2" "$work/$1.png"
-  cp "$work/$1.webp" screenshots/
-}
 
 # The bundled dance by the girl of the bundled picture, in it.
 dance() {

@@ -1,21 +1,9 @@
 #!/bin/bash
 # screenshots/performance.sh [WHAT...]: makes the pictures of styles in this folder, 47 to 54. WHAT: studio (47 to 50), strips
 # (51, 52), stimuli (53), figures (54); without one all.
-# Needs build/understudy, or $UNDERSTUDY, and what ./test installs (chromium). With the folder $OUT it makes PNGs there, as
-# tests do. DATA: a data folder (see train --data) whose CMU jump and walk the strips show, and a jump of a child of eight;
+# DATA: a data folder (see train --data) whose CMU jump and walk the strips show, and a jump of a child of eight;
 # the figures are of its Kinder-Gator clips. Without it there are no figures, and one strip, of the bundled walk.
-set -euo pipefail
-cd "$(dirname "$0")/.."
-understudy=${UNDERSTUDY:-$PWD/build/understudy}
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
-
-# shown NAME WIDTH: from $work/NAME.png into this folder, smaller.
-shown() {
-  [ -z "${OUT:-}" ] || { cp "$work/$1.png" "$OUT/"; return; }
-  node screenshots/smaller.mjs chromium "$2" "$work/$1.png"
-  cp "$work/$1.webp" screenshots/
-}
+. "$(dirname "$0")/common.sh"
 
 studio() {
   local name

@@ -31,6 +31,12 @@ void add_known(Metrics& metrics, const char* key, double value) {
 
 }  // namespace
 
+const FlatFigure* find_flat_figure(const std::string& key) {
+  for (const FlatFigure& figure : kFlatFigures)
+    if (key == figure.key) return &figure;
+  return nullptr;
+}
+
 double length_drift(const std::vector<FlatPose>& poses, const LengthReader& lengths) {
   std::array<Running, kFlatBoneCount> told;
   for (const FlatPose& pose : poses) {

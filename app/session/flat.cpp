@@ -124,10 +124,10 @@ void add_figures(const FlatPoses& source, const LengthReader& lengths, FlatResul
     if (std::isfinite(value)) result.figures.emplace_back(key, value);
   };
   const auto size = [](const Proportions& of) { return static_cast<double>(stature_of(of.length)); };
-  add("violation", sum / count);
-  add("drift", length_drift(result.poses, lengths));
-  add("jitter", mean_second_difference(result.poses) / size(result.lengths) /
-                    (mean_second_difference(clean) / size(source.lengths)));
+  add(kFlatFigures[0].key, sum / count);
+  add(kFlatFigures[1].key, length_drift(result.poses, lengths));
+  add(kFlatFigures[2].key, mean_second_difference(result.poses) / size(result.lengths) /
+                               (mean_second_difference(clean) / size(source.lengths)));
 }
 
 void perform(FlatJob& work, FlatJob::Wanted& take) {
@@ -282,7 +282,8 @@ void Studio::take_in_flat(FlatJob& work) {
     take->problem.clear();
     take->flat = wanted.result;
     take->metrics = wanted.result->figures;
-    take->series = {{"violation", "Order violation", "%", wanted.result->violation}};
+    const FlatFigure& violation = kFlatFigures[0];
+    take->series = {{violation.key, violation.label, violation.unit, wanted.result->violation}};
     ++take->generation;
     if (background_->opened_targets.erase(wanted.id) > 0)
       remember(session_.settings.recent_targets, wanted.path);

@@ -82,12 +82,16 @@ FootMarks foot_marks(const Joints& rest) {
   return marks;
 }
 
-BodyPlaces body_places(const PosedSkeleton& posed, const BodyMarks& marks) {
+BodyPlaces places_of_joints(const Joints& joints) {
   BodyPlaces places;
-  for (int point = 0; point < kBodyPoints; ++point)
-    places.row(point) = posed.joints.row(kJointOfPoint[point]);
-  places.row(body25::Neck) = (posed.joints.row(LeftShoulder) + posed.joints.row(RightShoulder)) / 2;
-  places.row(body25::MidHip) = (posed.joints.row(LeftHip) + posed.joints.row(RightHip)) / 2;
+  for (int point = 0; point < kBodyPoints; ++point) places.row(point) = joints.row(kJointOfPoint[point]);
+  places.row(body25::Neck) = (joints.row(LeftShoulder) + joints.row(RightShoulder)) / 2;
+  places.row(body25::MidHip) = (joints.row(LeftHip) + joints.row(RightHip)) / 2;
+  return places;
+}
+
+BodyPlaces body_places(const PosedSkeleton& posed, const BodyMarks& marks) {
+  BodyPlaces places = places_of_joints(posed.joints);
   place_face(posed, marks.face, places);
   for (int k = 0; k < 6; ++k) {
     const int point = body25::LeftBigToe + k;

@@ -26,7 +26,9 @@ struct BodyMarks {
   FootMarks feet;
 };
 
-/// The neck is the middle of the shoulders, the mid-hip that of the hips.
+/// Every point at its joint; the neck is the middle of the shoulders, the mid-hip that of the hips.
+BodyPlaces places_of_joints(const Joints& joints);
+/// With face and feet.
 BodyPlaces body_places(const PosedSkeleton& posed, const BodyMarks& marks);
 
 struct BodyViewOptions {

@@ -6,6 +6,7 @@
 #include "retarget/base/error.hpp"
 #include "retarget/keypoints/exchanged_sides.hpp"
 #include "retarget/keypoints/point_deviations.hpp"
+#include "retarget/pose2d/body_view.hpp"
 
 namespace understudy {
 
@@ -14,23 +15,6 @@ namespace {
 constexpr float kNearestPoint = 0.1f;  // metres before the eye
 constexpr int kFirstOfHead[] = {body25::Nose, body25::RightEye, body25::LeftEye, body25::RightEar,
                                 body25::LeftEar};
-
-/// Joints that are points of BODY_25 as they are.
-struct JointPoint {
-  int point, joint;
-};
-constexpr std::array<JointPoint, 12> kJointPoints = {{{body25::RightShoulder, RightShoulder},
-                                                      {body25::RightElbow, RightElbow},
-                                                      {body25::RightWrist, RightWrist},
-                                                      {body25::LeftShoulder, LeftShoulder},
-                                                      {body25::LeftElbow, LeftElbow},
-                                                      {body25::LeftWrist, LeftWrist},
-                                                      {body25::RightHip, RightHip},
-                                                      {body25::RightKnee, RightKnee},
-                                                      {body25::RightAnkle, RightAnkle},
-                                                      {body25::LeftHip, LeftHip},
-                                                      {body25::LeftKnee, LeftKnee},
-                                                      {body25::LeftAnkle, LeftAnkle}}};
 
 Vec3 row_of(const Joints& joints, int joint) {
   return joints.row(joint).transpose();
@@ -57,12 +41,9 @@ Vec3 carried(const PosedSkeleton& posed, const Joints& rest, int joint, const Ve
          posed.global[static_cast<size_t>(joint)] * (place - row_of(rest, joint));
 }
 
-/// Metres in the world, [25, 3].
-Points points_in_space(const FlatPerson& person, const PosedSkeleton& posed) {
-  Points points(kBodyPoints, 3);
-  for (const JointPoint& both : kJointPoints) points.row(both.point) = posed.joints.row(both.joint);
-  points.row(body25::Neck) = (points.row(body25::LeftShoulder) + points.row(body25::RightShoulder)) / 2;
-  points.row(body25::MidHip) = (points.row(body25::LeftHip) + points.row(body25::RightHip)) / 2;
+/// With a face of its own, and longer toes than body_places has: trained networks know these.
+BodyPlaces points_in_space(const FlatPerson& person, const PosedSkeleton& posed) {
+  BodyPlaces points = places_of_joints(posed.joints);
   for (int i = 0; i < 5; ++i)
     points.row(kFirstOfHead[i]) =
         carried(posed, person.rest, Head, person.head.row(i).transpose()).transpose();

@@ -3,19 +3,13 @@
 #include <cmath>
 
 #include "retarget/base/error.hpp"
+#include "retarget/pose2d/seen_points.hpp"
 
 namespace understudy {
 
 PoseCodeInput pose_code_input(const FlatPose& seen, float stature) {
   US_CHECK(std::isfinite(stature) && stature > 0, "nobody is ", stature, " pixels tall");
-  FlatPose pose = seen;
-  add_middles(pose);
-  FlatBox box;
-  int points = 0;
-  for (int p = 0; p < kPaperPoints; ++p)
-    if (pose.has(p)) box.extend(pose.at(p)), ++points;
-  US_CHECK(points >= 2, "a pose of ", points, " points has no code: it needs two");
-  US_CHECK(pose.body.topRows(kPaperPoints).allFinite(), "a pose has points that are not finite");
+  const auto [pose, box] = seen_points(seen, 2, "has no code");
   PoseCodeInput input = PoseCodeInput::Zero();
   for (int p = 0; p < kPaperPoints; ++p) {
     if (!pose.has(p)) continue;

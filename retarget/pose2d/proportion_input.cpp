@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "retarget/base/error.hpp"
+#include "retarget/pose2d/seen_points.hpp"
 
 namespace understudy {
 namespace {
@@ -14,14 +15,7 @@ constexpr float kLeastSize = 1e-3f;   // pixels
 }  // namespace
 
 ProportionInput proportion_input(const FlatPose& seen) {
-  FlatPose pose = seen;
-  add_middles(pose);
-  FlatBox box;
-  int points = 0;
-  for (int p = 0; p < kPaperPoints; ++p)
-    if (pose.has(p)) box.extend(pose.at(p)), ++points;
-  US_CHECK(points >= 2, "a pose of ", points, " points tells no lengths: it needs two");
-  US_CHECK(pose.body.topRows(kPaperPoints).allFinite(), "a pose has points that are not finite");
+  const auto [pose, box] = seen_points(seen, 2, "tells no lengths");
   ProportionInput input;
   input.size = box.diagonal().norm();
   US_CHECK(std::isfinite(input.size) && input.size > kLeastSize,

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "app/run/flat_figures.hpp"
 #include "app/run/flat_performance.hpp"
 #include "retarget/base/index.hpp"
 #include "retarget/base/text.hpp"
@@ -196,12 +197,9 @@ void draw_manner(const app::Session& session, const app::Take& take, PanelContex
              session.view.reference, {0, 1, 0.005f, "%.2f"});
   const app::TakeState* const state = selected_state(session);
   if (state == nullptr || !state->flat) return;
-  for (const auto& [key, value] : state->flat->figures) {
-    const char* const words = key == "violation" ? "Order changed"
-                              : key == "drift"   ? "Lengths change"
-                                                 : "Jitter";
-    row_text(ui, words, figure(value, key == "jitter" ? "of the source's" : "%"));
-  }
+  for (const auto& [key, value] : state->flat->figures)
+    if (const app::FlatFigure* const known = app::find_flat_figure(key))
+      row_text(ui, known->label, figure(value, known->unit));
 }
 
 void draw_edits(const std::vector<TrackEdit>& edits, PanelContext& context) {

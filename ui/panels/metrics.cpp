@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cctype>
 
+#include "app/run/flat_figures.hpp"
 #include "app/session/frame_figures.hpp"
 #include "retarget/base/index.hpp"
 #include "retarget/base/text.hpp"
@@ -35,9 +36,10 @@ std::vector<PlotLine> overlaid(const app::Session& session, const app::Series& o
 
 /// "PA-MPJPE, m" for "pa_mpjpe_m"; a metric of a newer version as plain words.
 std::string words_of(const std::string& key) {
-  const Metric* const known = find_metric(key);
-  if (known != nullptr)
+  if (const Metric* const known = find_metric(key))
     return *known->unit == 0 ? known->label : std::string(known->label) + ", " + known->unit;
+  if (const app::FlatFigure* const flat = app::find_flat_figure(key))
+    return std::string(flat->label) + ", " + flat->unit;
   std::string words = key;
   std::replace(words.begin(), words.end(), '_', ' ');
   if (!words.empty()) words[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(words[0])));
@@ -47,7 +49,7 @@ std::string words_of(const std::string& key) {
 /// For people who do not know it.
 std::string hint_of(const std::string& key) {
   const Metric* const known = find_metric(key);
-  if (known == nullptr) return "";
+  if (known == nullptr) return app::find_flat_figure(key) ? "The lower, the better." : "";
   std::string words = known->better == Better::Lower    ? "The lower, the better."
                       : known->better == Better::Higher ? "The higher, the better."
                                                         : "";
