@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <optional>
+#include <set>
 
 #include "app/run/exports.hpp"
 #include "app/run/keypoint_source.hpp"
@@ -95,12 +96,32 @@ void add_flat_options(CLI::App& command, FlatOptions& flat) {
 }
 
 bool is_flat_job(const JobOptions& job) {
-  // A folder that is still being written may have no pose in it yet; the target tells, then.
-  std::error_code failed;
-  const bool may_come = job.source.follow && std::filesystem::is_directory(job.source.path, failed) &&
-                        std::filesystem::is_empty(job.source.path, failed);
-  return (may_come || is_keypoint_source(job.source)) &&
-         (is_proportions_file(job.target.path) || looks_like_keypoints(job.target.path));
+  // The target tells: a folder that is still being written may have no pose in it yet, and where the source is
+  // not what it should be the user is told that.
+  return file_suffix(job.target.path) == ".json" || is_proportions_file(job.target.path) ||
+         looks_like_keypoints(job.target.path);
+}
+
+void check_flat_choice(const CLI::App& command, FlatUse use) {
+  using Names = std::set<std::string>;
+  static const Names in_picture = {"target-canvas", "target-person", "place",
+                                   "let-go",        "no-growth",     "no-look-ahead"};
+  static const Names also = {"smoothing", "source",         "target",  "person",    "follow",     "fps",
+                             "layout",    "engine",         "weights", "out",       "format",     "canvas",
+                             "points",    "engine-weights", "report",  "pose-file", "stick-width"};
+  static const Names in_space = {"up", "units", "height", "turn", "floor"};
+  for (const CLI::Option* option : command.get_options()) {
+    const std::string name = option->get_single_name();
+    if (option->count() == 0) continue;
+    const bool is_of_pictures = in_picture.count(name) > 0;
+    US_CHECK(use == FlatUse::InPicture || !is_of_pictures, "--", name,
+             ": is of 2D poses performed by somebody in a picture, which this target is not");
+    US_CHECK(use != FlatUse::InPicture || is_of_pictures || also.count(name) > 0, "--", name,
+             ": has no meaning for 2D poses that somebody in a picture performs");
+    US_CHECK(use != FlatUse::Lifted || in_space.count(name) == 0, "--", name,
+             ": has no meaning for 2D poses, whose size is told by --stature");
+    US_CHECK(use != FlatUse::None || name != "smoothing", "--", name, ": is of 2D poses");
+  }
 }
 
 void run_flat_job(const JobOptions& job, FlatOptions flat) {
@@ -114,14 +135,22 @@ void run_flat_job(const JobOptions& job, FlatOptions flat) {
   check_not_read(job.out, {flat.source.path, flat.target.path});
   US_CHECK(!job.source.follow || std::filesystem::is_directory(flat.source.path), flat.source.path,
            ": only a folder of 2D poses can be followed");
-  US_CHECK(job.preview.empty() && job.skeletons.empty(),
-           "2D poses have no --preview and no --skeletons: --out writes them");
+  const std::string suffix = file_suffix(job.source.path);
+  const bool may_be_poses = suffix == ".json" || suffix == ".npy" || suffix == ".npz" ||
+                            std::filesystem::is_directory(job.source.path);
+  US_CHECK(may_be_poses || is_keypoint_source(job.source), job.source.path,
+           ": is no 2D poses, and somebody in a picture (", job.target.path, ") performs nothing else");
+  if (!job.out.empty()) check_flat_output(job.out);
+  US_CHECK(job.format.empty() || job.format == "poses" || job.format == "pose_list", "--format ", job.format,
+           ": is of what moves in space; 2D poses are written by the suffix of --out");
   const FlatTools tools = flat_tools(job.how);
   const FlatPerformance made =
       job.source.follow ? follow_and_write(job, flat, tools) : perform_and_write(job, flat, tools);
   for (const std::string& sentence : made.told) log::info(sentence);
   if (made.flagged > 0)
-    log::warn(grouped(made.flagged) + " frames could not be used and repeat the pose before");
+    log::warn(made.flagged == 1
+                  ? std::string("1 frame could not be used and repeats the pose before")
+                  : grouped(made.flagged) + " frames could not be used and repeat the pose before");
   if (!job.report.empty()) write_flat_report(job.report, made, job.how);
 }
 

@@ -42,11 +42,14 @@ Action declare_retarget(CLI::App& command) {
   command.add_option("--preview", job->preview, "contact sheet as PNG");
   command.add_option("--skeletons", job->skeletons,
                      "PNG of up to 60 frames with the extracted skeleton in each");
-  return [job, flat] {
+  return [job, flat, &command] {
     const bool is_flat = is_flat_job(*job);
+    const bool is_lifted = !is_flat && is_keypoint_source(job->source);
+    check_flat_choice(command, is_flat ? FlatUse::InPicture : is_lifted ? FlatUse::Lifted : FlatUse::None);
     if (job->out.empty() && job->report.empty() && job->preview.empty() && job->skeletons.empty())
       job->out = is_flat ? "out.json" : "out.glb";
-    if (!is_flat && is_keypoint_source(job->source) && job->poses.canvas)
+    if (is_lifted) job->source.smoothing = flat->smoothing;
+    if (is_lifted && job->poses.canvas)
       job->source.canvas = printed("%dx%d", job->poses.canvas->width, job->poses.canvas->height);
     if (is_flat)
       run_flat_job(*job, *flat);

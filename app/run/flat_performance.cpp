@@ -304,16 +304,21 @@ FlatPerformance follow_flat(const FlatOptions& options, const FlatTools& tools,
   return made;
 }
 
+void check_flat_output(const std::string& path) {
+  for (const char* suffix : {"", ".mp4", ".json", ".csv", ".npz"})
+    if (file_suffix(path) == suffix) return;
+  throw Error(path + ": 2D poses are written as .json, .csv, .npz, or pictures: .mp4 or a folder");
+}
+
 void write_flat(const std::string& path, const KeypointReading& reading, const PoseChoice& choice) {
+  check_flat_output(path);
   const std::string suffix = file_suffix(path);
   if (suffix == ".csv")
     write_keypoint_csv(path, reading);
   else if (suffix == ".npz")
     write_keypoint_npz(path, reading);
-  else if (suffix.empty() || suffix == ".mp4" || suffix == ".json")
-    write_pose_pictures(path, reading, choice);
   else
-    throw Error(path + ": 2D poses are written as .json, .csv, .npz, or pictures: .mp4 or a folder");
+    write_pose_pictures(path, reading, choice);
 }
 
 }  // namespace understudy::app

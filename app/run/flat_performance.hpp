@@ -121,6 +121,8 @@ FlatPerformance perform_flat(const FlatOptions& options, const FlatTools& tools)
 FlatPerformance follow_flat(const FlatOptions& options, const FlatTools& tools,
                             const std::function<void(const KeypointReading&)>& done);
 
+/// Throws Error naming the path where write_flat knows no such file.
+void check_flat_output(const std::string& path);
 /// By the suffix: .json, .csv, .npz hold the poses; .mp4 or a folder pictures of them, see
 /// write_pose_pictures. Throws Error naming the path.
 void write_flat(const std::string& path, const KeypointReading& reading, const PoseChoice& choice);

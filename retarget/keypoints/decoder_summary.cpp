@@ -176,7 +176,8 @@ void FrameDecoder::tell_oddities(KeypointReading& reading) const {
     if (count > 0) reading.told.push_back(source_ + ": " + counted(count, "point") + " " + what);
   };
   if (decided_->all_are_seen)
-    reading.told.push_back(source_ + ": every confidence is 0 although there are places: all count as seen");
+    reading.told.push_back(source_ +
+                           ": no confidence is above 0 although there are places: all count as seen");
   if (decided_->is_logit) reading.told.push_back(source_ + ": visibilities are logits, not in 0..1");
   tell(odd_.above_one,
        "of a confidence above 1 (up to " + short_number(odd_.highest) + "), which counts as 1");

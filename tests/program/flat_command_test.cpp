@@ -190,7 +190,6 @@ TEST_F(FlatCommand, BadInputIsASentence) {
   expect_clean_failure(perform({"--out", out("a.glb")}), "2D poses are written as");
   expect_clean_failure(perform({"--out", out("a.json"), "--person", "7"}), "7");
   expect_clean_failure(perform({"--out", out("a.json"), "--person", "anna"}), "anna");
-  expect_clean_failure(perform({"--out", out("a.json"), "--preview", out("p.png")}), "--preview");
   expect_clean_failure(perform({"--out", scratch.path("reference.json")}), "reference.json");
   expect_clean_failure(perform({"--out", out("a.json"), "--engine", "copy"}),
                        "the engine 'copy' is for what moves in space");
@@ -205,6 +204,60 @@ TEST_F(FlatCommand, BadInputIsASentence) {
   expect_clean_failure(run_program({"retarget", "--source", target(), "--target", target(), "--out",
                                     out("a.glb"), "--fov", "30"}),
                        "--fov) are for 2D poses");
+}
+
+TEST_F(FlatCommand, OfTwoFilesTheOneThatIsWrongIsNamed) {
+  std::filesystem::create_directories(scratch.path("empty"));
+  write_file(scratch.path("text.json"), "hello");
+  write_file(scratch.path("nothing.json"), "");
+  write_file(scratch.path("braces.json"), "{}");
+  write_file(scratch.path("walk.bvh"), "HIERARCHY");
+  const std::vector<std::pair<std::string, std::string>> sources = {
+      {"nowhere.json", "there is no such file"},
+      {"text.json", "is no JSON"},
+      {"nothing.json", "is empty"},
+      {"braces.json", "is empty JSON, there is nobody in it"},
+      {"empty", "has no JSON files, so no poses"},
+      {"walk.bvh", "is no 2D poses, and somebody in a picture"}};
+  for (const auto& [name, problem] : sources)
+    expect_clean_failure(run_program({"retarget", "--source", scratch.path(name), "--target",
+                                      scratch.path("reference.json"), "--out", out("a.json")}),
+                         scratch.path(name) + ": " + problem);
+  for (const auto& [name, problem] : sources)
+    if (file_suffix(name) == ".json")
+      expect_clean_failure(run_program({"retarget", "--source", scratch.path("track"), "--target",
+                                        scratch.path(name), "--out", out("a.json")}),
+                           scratch.path(name) + ": " + problem);
+}
+
+TEST_F(FlatCommand, OptionsThatWouldDoNothingAreRefused) {
+  for (const std::vector<std::string>& option : {std::vector<std::string>{"--depth"},
+                                                 {"--camera", "yaw=30"},
+                                                 {"--rate", "10"},
+                                                 {"--count", "5"},
+                                                 {"--tempo", "2"},
+                                                 {"--style", "old"},
+                                                 {"--height", "1.8"},
+                                                 {"--fov", "60"},
+                                                 {"--hide-limbs"},
+                                                 {"--remove-floor"},
+                                                 {"--betas", "1"},
+                                                 {"--preview", "p.png"}}) {
+    std::vector<std::string> all = {"--out", out("a.json")};
+    all.insert(all.end(), option.begin(), option.end());
+    expect_clean_failure(perform(all), option[0] + ": has no meaning for 2D poses");
+  }
+  expect_clean_failure(perform({"--out", out("a.json"), "--format", "glb"}),
+                       "--format glb: is of what moves");
+  expect_clean_failure(run_program({"retarget", "--source", scratch.path("track"), "--target", target(),
+                                    "--out", out("a.glb"), "--height", "1.8"}),
+                       "--height: has no meaning for 2D poses, whose size is told by --stature");
+  expect_clean_failure(retarget(scans(), {"--out", out("a.glb"), "--smoothing", "2"}),
+                       "--smoothing: is of 2D poses");
+  for (const char* option : {"--let-go", "--no-growth", "--no-look-ahead"})
+    expect_clean_failure(run_program({"retarget", "--source", scratch.path("track"), "--target", target(),
+                                      "--out", out("a.glb"), option}),
+                         std::string(option) + ": is of 2D poses performed by somebody in a picture");
 }
 
 TEST_F(FlatCommand, ATrackIsLiftedOntoACharacterInSpace) {

@@ -170,7 +170,8 @@ TEST(BadKeypoints, EveryConfidence0) {
   for (size_t i = 2; i < list.size(); i += 3) list[i] = 0;
   const KeypointReading reading = read_of(json);
   EXPECT_EQ(points_seen(reading.performing().poses[0].pose), kBodyPoints);
-  EXPECT_TRUE(tells(reading, "x.json: every confidence is 0 although there are places: all count as seen"));
+  EXPECT_TRUE(
+      tells(reading, "x.json: no confidence is above 0 although there are places: all count as seen"));
 }
 
 TEST(BadKeypoints, ConfidenceAbove1OrBelow0) {
