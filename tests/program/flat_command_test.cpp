@@ -154,6 +154,28 @@ TEST_F(FlatCommand, OddReferencesAreToldInASentence) {
   EXPECT_GT(box.sizes().maxCoeff(), 50);
 }
 
+TEST_F(FlatCommand, ABabyPerformsOnItsShortLegs) {
+  FlatPose baby = flat_person(300, 0.5f);
+  const Vec2 hips = baby.at(body25::MidHip), neck = baby.at(body25::Neck);
+  for (int point = 0; point < kBodyPoints; ++point) {
+    Vec2 place = baby.at(point);
+    if (place.y() > hips.y()) place.y() = hips.y() + 0.6f * (place.y() - hips.y());
+    if (place.y() < neck.y()) place = neck + 1.5f * (place - neck);
+    baby.set(point, place, 0.9f);
+  }
+  write_controlnet(scratch.path("baby.json"), reading(baby));
+  const Finished done = run_program({"retarget", "--source", scratch.path("track"), "--target",
+                                     scratch.path("baby.json"), "--out", out("baby_out.json")});
+  ASSERT_EQ(done.code, 0) << done.err;
+  const auto legs_of = [](const FlatPose& pose) {
+    const float hip = pose.at(body25::MidHip).y();
+    return (pose.at(body25::LeftAnkle).y() - hip) / (hip - pose.at(body25::Neck).y());
+  };
+  const FlatPose made = *read_keypoints(out("baby_out.json")).performing().at(7);
+  EXPECT_NEAR(legs_of(made), legs_of(baby), 0.15f * legs_of(baby));
+  EXPECT_NEAR(made.at(body25::LeftAnkle).y(), baby.at(body25::LeftAnkle).y(), 6);
+}
+
 TEST_F(FlatCommand, WhoComesNearerGrowsOrDoesNot) {
   KeypointReading nearer = reading(flat_person());
   for (int t = 1; t < 90; ++t) add(nearer, flat_person(300, 1 + 0.005f * static_cast<float>(t)));
