@@ -1,6 +1,7 @@
 // 2D poses in the studio: opened as a source, performed by people in pictures, put right by hand.
 #include <nlohmann/json.hpp>
 
+#include "app/run/flat_figures.hpp"
 #include "app/run/flat_performance.hpp"
 #include "app/session/document_file.hpp"
 #include "render/image.hpp"
@@ -231,7 +232,10 @@ TEST_F(FlatStudioTest, FiguresSayHowTheOrderOfPointsIsKept) {
   ASSERT_EQ(take.series.size(), 1u);
   EXPECT_EQ(take.series[0].values.size(), size_t{kCount});
   ASSERT_FALSE(take.metrics.empty());
-  for (const auto& [key, value] : take.metrics) EXPECT_GE(value, 0) << key;
+  for (const auto& [key, value] : take.metrics) {
+    EXPECT_GE(value, 0) << key;
+    EXPECT_NE(find_flat_figure(key), nullptr) << "the panel has no name for " << key;
+  }
 }
 
 }  // namespace

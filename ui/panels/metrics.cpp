@@ -96,9 +96,11 @@ std::string figure_of(const app::Metrics& metrics, const std::string& key) {
   return "\u2013";
 }
 
-/// What is left out while there is no ground truth.
+/// What is left out while there is no ground truth; those of bodies in space say nothing of 2D poses.
 void draw_needing_truth(const app::Session& session, Ui& ui) {
-  if (session.truth != nullptr) return;
+  const size_t take = session.selected_take;
+  const bool is_flat = take < session.takes.size() && session.takes[take].flat;
+  if (session.truth != nullptr || is_flat) return;
   std::string names;
   for (const Metric& metric : metric_table())
     if ((metric.needs & kNeedsTruth) != 0) names += (names.empty() ? "" : ", ") + std::string(metric.label);
