@@ -102,6 +102,14 @@ TEST_F(FlatCommand, AFolderThatIsBeingWrittenIsFollowed) {
   for (int64_t t = 0; t < 8; ++t) EXPECT_EQ(*live.performing().at(t), *file.performing().at(t)) << t;
 }
 
+TEST_F(FlatCommand, PicturesWhoseSizeNobodyTellsAreWrittenAtTheEnd) {
+  write_file(scratch.path("track/done"), "");
+  ASSERT_EQ(perform({"--out", out("live"), "--follow", "--place", "source"}).code, 0);
+  ASSERT_EQ(perform({"--out", out("file"), "--no-look-ahead", "--place", "source"}).code, 0);
+  for (const char* name : {"/frame_00000.png", "/frame_00007.png", ".json"})
+    EXPECT_EQ(read_file(out("live") + name), read_file(out("file") + name)) << name;
+}
+
 TEST_F(FlatCommand, PicturesOfAFolderThatIsBeingWrittenAreThereAsTheirFramesCome) {
   const std::string live = scratch.path("live");
   std::filesystem::create_directories(live);
