@@ -96,8 +96,8 @@ void add_flat_options(CLI::App& command, FlatOptions& flat) {
 }
 
 bool is_flat_job(const JobOptions& job) {
-  // The target tells: a folder that is still being written may have no pose in it yet, and where the source is
-  // not what it should be the user is told that.
+  // The target tells: a folder that is still being written may have no pose in it yet, and where the source
+  // is not what it should be the user is told that.
   return file_suffix(job.target.path) == ".json" || is_proportions_file(job.target.path) ||
          looks_like_keypoints(job.target.path);
 }

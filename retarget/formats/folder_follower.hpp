@@ -27,9 +27,9 @@ struct FollowedFile {
   int64_t missing = 0;      ///< how many numbers are left out before it
 };
 
-/// A file is whole where a later one is there, or nobody wrote to it between two looks and it can be read. One
-/// that comes up to half a second after its successor still finds its place. A file `done` or `.done` ends
-/// the folder. One thread at a time.
+/// A file is whole where a later one is there, or nobody wrote to it between two looks and it can be read.
+/// One that comes up to half a second after its successor still finds its place. A file `done` or `.done`
+/// ends the folder. One thread at a time.
 class FolderFollower {
  public:
   /// Which of the names, hidden ones and earlier ones left out, are frames; in any order.
@@ -39,7 +39,8 @@ class FolderFollower {
 
   /// Throws Error when the folder cannot be read.
   FolderFollower(std::string folder, FolderFollowOptions options, Choice choice);
-  /// Waits for the next file, the one that was read last. None at the end. Throws Error where none came at all.
+  /// Waits for the next file, the one that was read last. None at the end. Throws Error where none came at
+  /// all.
   std::optional<FollowedFile> next(const Read& read);
   /// The last file does not count: numbers go on from the one before.
   void forget_last() { place_ = place_before_; }
