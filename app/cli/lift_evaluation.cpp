@@ -62,6 +62,7 @@ LiftedTrack performed(const Case& c, const EvalOptions& options, const Truth& tr
   const auto fov = npz.find("fov_deg");
   US_CHECK(fov != npz.end() && fov->second.values.size() == 1, c.truth, ": has no fov_deg, one number");
   from.fov = static_cast<double>(fov->second.values[0]);
+  from.pitch = 0;  // the truth is in the camera's axes
   const auto source = open_source(from);
   RetargetedSource retargeted(*source, retargeter, from, source_tools(options.how));
   LiftedTrack track;

@@ -138,6 +138,10 @@ void add_source_options(CLI::App& command, SourceOptions& source) {
       .add_option("--fov", source.fov,
                   "vertical field of view of the camera that saw the 2D poses, degrees (default: 50)")
       ->check(CLI::Range(1.0, 170.0));
+  command
+      .add_option("--pitch", source.pitch,
+                  "how far the camera looks down that saw the 2D poses, degrees (default: as they tell)")
+      ->check(CLI::Range(-80.0, 80.0));
   command.add_option("--up", source.import.up, "the source's up axis: auto, x, y, z, -x, -y, -z");
   command.add_option("--units", source.import.units, "the source's units: auto, m, dm, cm, mm, in");
   command.add_option("--height", source.import.height,

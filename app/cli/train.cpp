@@ -60,6 +60,7 @@ void add_own(CLI::App& command, nn::PartTrainOptions& options) {
 }
 void add_own(CLI::App&, nn::DeformationTrainOptions&) {}
 void add_own(CLI::App&, nn::ProportionsTrainOptions&) {}
+void add_own(CLI::App&, nn::PointsTrainOptions&) {}
 void add_own(CLI::App& command, nn::Pose2dTrainOptions& options) {
   command
       .add_option("--links", options.links,
@@ -233,6 +234,7 @@ Action declare_train(CLI::App& command) {
   add_network<nn::ProportionsTrainOptions>(command, "how long a person's bones are, from a 2D pose", chosen);
   add_network<nn::Pose2dTrainOptions>(command, "2D poses performed by others, paper 5's network", chosen);
   add_network<nn::LifterTrainOptions>(command, "skeletons in space, from 2D poses", chosen);
+  add_network<nn::PointsTrainOptions>(command, "the filter of 2D points", chosen);
   return [chosen] { return (*chosen)(); };
 }
 

@@ -43,6 +43,7 @@ class KeypointSource final : public AnimatedSource {
     view_.canvas = reading.canvas;
     view_.stature_m = static_cast<float>(options.stature);
     view_.fov_deg = static_cast<float>(options.fov);
+    if (options.pitch) view_.pitch_deg = static_cast<float>(*options.pitch);
     for (int64_t frame = 0; frame < ssize(reading.frames); ++frame)
       numbers_.push_back(reading.seconds(frame));
     std::string told;
@@ -50,8 +51,9 @@ class KeypointSource final : public AnimatedSource {
     for (const std::string& sentence : reading.told)
       append_item(told, sentence.rfind(whose, 0) == 0 ? sentence.substr(whose.size()) : sentence, "; ");
     append_item(told,
-                printed("lifted for a person of %g m before a level camera of %g degrees", options.stature,
-                        options.fov),
+                printed("lifted for a person of %g m before a camera of %g degrees that looks down %s",
+                        options.stature, options.fov,
+                        options.pitch ? printed("by %g", *options.pitch).c_str() : "as far as they tell"),
                 "; ");
     set_decision(told, Eigen::Matrix4d::Identity());
     if (!options.quiet) log::info(name_ + ": " + told);
@@ -130,8 +132,8 @@ void check_keypoint_options(const SourceOptions& options) {
 void check_no_picture(const SourceOptions& options) {
   US_CHECK(options.layout.empty(), options.path, ": an order of points (--layout) is for 2D poses");
   US_CHECK(options.stature == static_cast<double>(kUsualStature_m) &&
-               options.fov == static_cast<double>(kUsualFov_deg),
-           options.path, ": a stature and a field of view (--stature, --fov) are for 2D poses");
+               options.fov == static_cast<double>(kUsualFov_deg) && !options.pitch,
+           options.path, ": a stature and a camera (--stature, --fov, --pitch) are for 2D poses");
 }
 
 std::unique_ptr<Source> open_keypoint_source(const SourceOptions& options) {

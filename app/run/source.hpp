@@ -53,8 +53,9 @@ struct SourceOptions {
   std::string canvas{};  ///< "1280x720"; empty: as the file or a picture beside it tells
   double stature = static_cast<double>(kUsualStature_m);  ///< of the person, metres
   double fov = static_cast<double>(kUsualFov_deg);        ///< vertical, of the camera, degrees
-  float smoothing = 1;                                    ///< of their points, see KeypointFilterOptions
-  std::vector<TrackEdit> point_edits{};                   ///< by hand
+  std::optional<double> pitch{};         ///< how far the camera looks down, degrees; none: as the poses tell
+  float smoothing = 1;                   ///< of their points, see KeypointFilterOptions
+  std::vector<TrackEdit> point_edits{};  ///< by hand
   ScanEdits
       edits{};  ///< of each frame, before anybody is looked for; documents have theirs beside the source
 };
@@ -80,6 +81,7 @@ FieldsOf<S, SourceOptions> fields(V& visit, S& source) {
   visit("canvas", source.canvas);
   visit("stature", source.stature, Within<double>{0.3, 3});
   visit("fov", source.fov, Within<double>{1, 170});
+  visit("pitch", source.pitch, Within<double>{-80, 80});
   visit("smoothing", source.smoothing, kFlatSmoothing);
   visit("point_edits", source.point_edits);
 }

@@ -7,15 +7,13 @@
 #include "retarget/base/text.hpp"
 #include "retarget/keypoints/exchanged_sides.hpp"
 #include "retarget/keypoints/point_filter.hpp"
-#include "retarget/keypoints/track_jitter.hpp"
+#include "retarget/keypoints/track_noise.hpp"
 
 namespace understudy {
 namespace {
 
 constexpr int kFewestPoints = 3;      // fewer are no pose
 constexpr int kOutliersBelieved = 3;  // frames in a row: then the point did jump
-constexpr float kSizeMemory = 1;      // seconds
-constexpr float kUnknownJitter = 0.5f, kLeastJitter = 0.1f, kMostJitter = 2;  // of kSightingError
 constexpr double kLongestStep = 3600;  // seconds: longer is as good as that
 
 /// Where a hand or the face starts among all points of a person.
@@ -26,18 +24,21 @@ constexpr int kLeftHandAt = kBodyPoints, kRightHandAt = kLeftHandAt + kHandPoint
 
 struct KeypointFilter::State {
   std::array<PointFilter, kAllPoints> points;
-  TrackJitter jitter;
+  TrackNoise track;
   ExchangedSides sides;
   FlatPose last;
-  float size = 0;      // pixels
   double waiting = 0;  // seconds of frames that could not be used
   bool has_last = false;
 
   PointFilter::Noise noise(const KeypointFilterOptions& options) const {
-    const float all = std::max(size, 1.0f), seen = jitter.pixels() / (PointFilter::kSightingError * all);
-    return {all,
-            options.smoothing * (seen < 0 ? kUnknownJitter : std::clamp(seen, kLeastJitter, kMostJitter)),
-            options.gap_s};
+    return {std::max(track.size(), 1.0f), options.smoothing * track.sigma(), unrest(), options.gap_s};
+  }
+  float unrest() const {
+    float sum = 0;
+    int alive = 0;
+    for (size_t p = 0; p < kBodyPoints; ++p)
+      if (points[p].is_alive()) sum += points[p].unrest(), ++alive;
+    return alive > 0 ? sum / static_cast<float>(alive) : 0;
   }
   FlatPose expected(float dt) const {
     FlatPose pose;
@@ -46,26 +47,19 @@ struct KeypointFilter::State {
         pose.set(p, points[static_cast<size_t>(p)].expected(dt), 1);
     return pose;
   }
-  void update_size(const FlatPose& seen, float dt) {
-    const float now = size_of(seen);
-    if (now <= 0) return;
-    const float share =
-        now > size ? 0.5f : 1 - std::exp(-dt / kSizeMemory);  // a body seems small, never large
-    size = size <= 0 ? now : size + share * (now - size);
-  }
   void forget_points() {
     for (PointFilter& point : points) point.reset();
     sides.reset();
-    jitter.restart();
+    track.restart();
   }
   /// A cut, or another place at once: most of what is seen both times is far off.
-  bool has_jumped(const FlatPose& seen, float dt, const PointFilter::Noise& noise) const {
+  bool has_jumped(const FlatPose& pose, float dt, const PointFilter::Noise& noise) const {
     int common = 0, far = 0;
     for (int p = 0; p < kBodyPoints; ++p) {
       const PointFilter& point = points[static_cast<size_t>(p)];
-      if (!seen.has(p) || !point.is_alive()) continue;
+      if (!pose.has(p) || !point.is_alive()) continue;
       ++common;
-      far += point.is_outlier(seen.at(p), dt, noise);
+      far += point.is_outlier(pose.at(p), dt, noise);
     }
     return far >= kFewestPoints && 2 * far > common;
   }
@@ -143,8 +137,7 @@ CleanPose KeypointFilter::push(const FlatPose* seen, double dt, const std::strin
   const auto step = static_cast<float>(state.waiting);
   state.waiting = 0;
   if (step > std::max(options_.gap_s, 2 * static_cast<float>(dt))) state.forget_points();
-  state.update_size(*seen, step);
-  state.jitter.push(*seen, step);
+  state.track.push(*seen, step);
   const PointFilter::Noise noise = state.noise(options_);
   out.pose = *seen;
   if (options_.mend_sides && state.has_last) {

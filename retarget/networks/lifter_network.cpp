@@ -8,6 +8,7 @@
 #include "retarget/base/error.hpp"
 #include "retarget/math/rotation.hpp"
 #include "retarget/networks/linear_layer.hpp"
+#include "retarget/pose2d/lengths_so_far.hpp"
 #include "retarget/pose2d/lift_input.hpp"
 #include "retarget/pose2d/lifted_path.hpp"
 
@@ -63,13 +64,15 @@ LiftedPose both_sides(const LiftedRows& rows) {
     lifted.off[j] = std::exp((rows.log_off(0, j) + rows.log_off(1, m)) / 2);
   }
   lifted.turns = turns_of(rows);
+  lifted.pitch = (rows.numbers(0, kLifterPitchAt) + rows.numbers(1, kLifterPitchAt)) / 2;
   return lifted;
 }
 
 class NetworkLifter final : public Lifter {
  public:
-  explicit NetworkLifter(const NetworkWeights& file)
-      : embed_(file.linear(kernels(), "embed", kLiftInputs, kLifterEmbedded)),
+  NetworkLifter(const NetworkWeights& file, std::unique_ptr<const LengthReader> lengths)
+      : reader_(std::move(lengths)),
+        embed_(file.linear(kernels(), "embed", kLiftInputs, kLifterEmbedded)),
         from_input_(kernels(), file.tensor("memory.weight_ih_l0", kGates * kLifterHidden, kLifterEmbedded),
                     file.tensor("memory.bias_ih_l0", kGates * kLifterHidden, 1)),
         from_memory_(kernels(), file.tensor("memory.weight_hh_l0", kGates * kLifterHidden, kLifterHidden),
@@ -77,11 +80,15 @@ class NetworkLifter final : public Lifter {
         head_(file.linear(kernels(), "head", kLifterEmbedded + kLifterHidden, kLifterHead)),
         last_(file.linear(kernels(), "last", kLifterHead, kLifterOutputs)) {}
 
-  void reset(const LiftView& view) override { memory_ = Memory{{}, {}, hidden_zero(), LiftedPath(view)}; }
-  Extraction push(const FlatPose& pose, float dt) override {
+  void reset(const LiftView& view) override { memory_ = Memory{{}, {}, {}, hidden_zero(), LiftedPath(view)}; }
+  Extraction push(const FlatPose& seen, float dt) override {
     US_CHECK(memory_, "2D poses are lifted after a reset()");
+    const FlatPose pose = liftable(seen);
     Memory next = *memory_;
-    const LiftFrame frame = next.plain.push(pose, dt), mirrored = next.mirrored.push(in_mirror(pose), dt);
+    // Both sides of a person are alike, so that these are those of the mirror image too.
+    const BoneLengths& lengths = next.lengths.push(pose, *reader_);
+    const LiftFrame frame = next.plain.push(pose, lengths, dt),
+                    mirrored = next.mirrored.push(in_mirror(pose), lengths, dt);
     LiftedPose lifted = both_sides(answer(frame, mirrored, next.hidden));
     lifted.origin = frame.origin, lifted.has_hips = frame.sees_hips, lifted.size = frame.size;
     Extraction extraction = next.path.push(lifted, pose, dt);
@@ -96,6 +103,7 @@ class NetworkLifter final : public Lifter {
 
  private:
   struct Memory {
+    LengthsSoFar lengths;
     LiftInput plain, mirrored;
     RowMatrix hidden;  // [2, kLifterHidden]
     LiftedPath path;
@@ -132,14 +140,16 @@ class NetworkLifter final : public Lifter {
       }
   }
 
+  std::unique_ptr<const LengthReader> reader_;
   LinearLayer embed_, from_input_, from_memory_, head_, last_;
   std::optional<Memory> memory_;
 };
 
 }  // namespace
 
-std::unique_ptr<Lifter> load_network_lifter(const std::string& path) {
-  return std::make_unique<NetworkLifter>(NetworkWeights(path, "lifter", kLifterVersion));
+std::unique_ptr<Lifter> load_network_lifter(const std::string& path,
+                                            std::unique_ptr<const LengthReader> lengths) {
+  return std::make_unique<NetworkLifter>(NetworkWeights(path, "lifter", kLifterVersion), std::move(lengths));
 }
 
 }  // namespace understudy::nn

@@ -6,12 +6,13 @@
 #include <string>
 
 #include "retarget/keypoints/flat_pose.hpp"
+#include "retarget/pipeline/keypoint_transfer.hpp"
 #include "retarget/pipeline/lifter.hpp"
 
 namespace understudy::nn {
 
 /// Of the network's form and what it sees; weights of another version are refused.
-constexpr int kLifterVersion = 1;
+constexpr int kLifterVersion = 2;
 constexpr int kLifterEmbedded = 256, kLifterHidden = 208, kLifterHead = 224;
 /// Its answer: places of the joints (x, y, z; around the middle of the hips, of LiftFrame::size), logarithms
 /// of how far each is off, world rotations in 6D, the sine of the camera's pitch.
@@ -44,8 +45,10 @@ constexpr std::array<int, kJointCount> kPointOfJoint = {-1,
                                                         body25::LeftWrist,
                                                         body25::RightWrist};
 
-/// Without LibTorch. It lifts each pose and its mirror image. Throws Error naming the file when it is
-/// missing, damaged, of another network or of another version.
-std::unique_ptr<Lifter> load_network_lifter(const std::string& path);
+/// Without LibTorch. It lifts each pose and its mirror image, of a person whose lengths the reader tells from
+/// the poses so far. Throws Error naming the file when it is missing, damaged, of another network or of
+/// another version.
+std::unique_ptr<Lifter> load_network_lifter(const std::string& path,
+                                            std::unique_ptr<const LengthReader> lengths);
 
 }  // namespace understudy::nn

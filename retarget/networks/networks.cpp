@@ -112,17 +112,21 @@ std::shared_ptr<MotionStyle> load_any_style(const StyleChoice& choice) {
 /// Makes one of flat_engines(); weights: its file, empty where it has none.
 struct FlatMaker {
   const char* name;
-  std::unique_ptr<KeypointTransfer> (*make)(const FlatEngine& wanted, const std::string& weights);
+  std::unique_ptr<KeypointTransfer> (*make)(const FlatEngine& wanted, const NetworkOptions& options,
+                                            const std::string& weights);
 };
 constexpr FlatMaker kFlatMakers[] = {
     {"limbs",
-     [](const FlatEngine& wanted, const std::string&) -> std::unique_ptr<KeypointTransfer> {
-       return std::make_unique<LimbTransfer>(wanted.touches);
-     }},
-    {"paper", [](const FlatEngine&, const std::string& weights) { return load_code_transfer(weights); }},
-    {"lift", [](const FlatEngine& wanted, const std::string& weights) -> std::unique_ptr<KeypointTransfer> {
-       return std::make_unique<LiftTransfer>(load_network_lifter(weights), wanted.touches,
-                                             static_cast<float>(1 / wanted.fps));
+     [](const FlatEngine& wanted, const NetworkOptions&, const std::string&)
+         -> std::unique_ptr<KeypointTransfer> { return std::make_unique<LimbTransfer>(wanted.touches); }},
+    {"paper", [](const FlatEngine&, const NetworkOptions&,
+                 const std::string& weights) { return load_code_transfer(weights); }},
+    {"lift",
+     [](const FlatEngine& wanted, const NetworkOptions& options,
+        const std::string& weights) -> std::unique_ptr<KeypointTransfer> {
+       return std::make_unique<LiftTransfer>(
+           load_network_lifter(weights, load_length_reader(weights_folder(options))), wanted.touches,
+           static_cast<float>(1 / wanted.fps));
      }}};
 
 /// The engine's own file, or the one of that name in the folder.
@@ -223,12 +227,12 @@ std::unique_ptr<KeypointTransfer> load_keypoint_transfer(const NetworkOptions& o
            "' has no network, so no weights");
   for (const FlatMaker& one : kFlatMakers)
     if (wanted.name == one.name)
-      return one.make(wanted, engine.weights ? weights_of(options, engine.weights) : "");
+      return one.make(wanted, options, engine.weights ? weights_of(options, engine.weights) : "");
   throw Error("nothing makes the engine '" + wanted.name + "'");
 }
 
 std::unique_ptr<Lifter> load_lifter(const std::string& folder) {
-  return load_network_lifter(folder + "/lifter.weights");
+  return load_network_lifter(folder + "/lifter.weights", load_length_reader(folder));
 }
 
 RuntimeReport runtime_report() {

@@ -104,10 +104,16 @@ struct LifterTrainOptions : TrainOptions {
   int frames = 40;  ///< of a sequence
 };
 
+/// The gains of PointFilter. Beside the weights it writes their numbers as point_gains.inc, for the source
+/// code.
+struct PointsTrainOptions : TrainOptions {
+  static constexpr const char* kNetwork = "points";
+};
+
 using AnyTrainOptions =
     std::variant<SkeletonTrainOptions, PartTrainOptions, MotionTrainOptions, DeformationTrainOptions,
                  MotionSpaceTrainOptions, StyleTrainOptions, StyleJudgeTrainOptions, ProportionsTrainOptions,
-                 Pose2dTrainOptions, LifterTrainOptions>;
+                 Pose2dTrainOptions, LifterTrainOptions, PointsTrainOptions>;
 
 /// Trains until the minutes or samples are used up, going on from the checkpoint where there is one. 0 when
 /// it came to the end, 1 when it was cancelled. Throws Error.

@@ -19,6 +19,7 @@ LiftView from_afar() {
   LiftView view;
   view.canvas = {1000, 1000};
   view.fov_deg = 1;
+  view.pitch_deg = 0;
   return view;
 }
 

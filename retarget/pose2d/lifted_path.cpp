@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "retarget/base/error.hpp"
+#include "retarget/math/rotation.hpp"
 #include "retarget/pipeline/human_rest.hpp"
 #include "retarget/pose2d/lift_truth.hpp"
 
@@ -16,7 +17,7 @@ constexpr float kStatureMemory_s =
 constexpr float kSink_s = 0.1f,
                 kRise_s = 2;     // the floor goes down with a foot at once, and up after jumps only
 constexpr float kSole = 0.012f;  // of the stature, below the ball of the foot
-constexpr float kLeastStature_m = 0.3f, kMostStature_m = 3;
+constexpr float kLeastStature_m = 0.3f, kMostStature_m = 3, kMostPitch_deg = 80;
 
 /// The points that show a joint, any of them; none for joints inside the trunk.
 std::array<int, 5> points_of(int joint) {
@@ -104,6 +105,8 @@ LiftedPath::LiftedPath(const LiftView& view) : view_(view) {
            view.stature_m);
   US_CHECK(view.fov_deg >= 1 && view.fov_deg <= 170,
            "a camera's field of view must be 1 to 170 degrees, not ", view.fov_deg);
+  US_CHECK(!view.pitch_deg || std::abs(*view.pitch_deg) <= kMostPitch_deg, "a camera looks down by ",
+           -kMostPitch_deg, " to ", kMostPitch_deg, " degrees, not ", *view.pitch_deg);
   focal_ = static_cast<float>(view.canvas.height) / (2 * std::tan(view.fov_deg * kPi / 360));
 }
 
@@ -112,6 +115,14 @@ float LiftedPath::metres_a_pixel(const LiftedPose& lifted, float dt) {
   const float share = started_ ? 1 - std::exp(-dt / kStatureMemory_s) : 1;
   log_stature_ += share * (now - log_stature_);
   return view_.stature_m / std::exp(log_stature_);
+}
+
+/// From the camera's axes to the world's. The camera is still: all poses so far tell how far it looks down.
+Mat3 LiftedPath::from_camera(float told) {
+  ++poses_;
+  pitch_ += (static_cast<double>(std::clamp(told, -1.0f, 1.0f)) - pitch_) / poses_;
+  const float pitch = view_.pitch_deg ? *view_.pitch_deg * kPi / 180 : static_cast<float>(std::asin(pitch_));
+  return rotation_from_axis_angle(-pitch * Vec3::UnitX());
 }
 
 /// Puts the lowest of the body on the floor, at height 0, and lets who jumps jump.
@@ -133,18 +144,19 @@ Extraction LiftedPath::push(const LiftedPose& lifted, const FlatPose& pose, floa
   const Mat3 turn = turn_from_middle(-hips);
 
   Extraction out;
-  out.joints = (metres * lifted.size) * lifted.joints * turn.transpose();
-  out.joints.rowwise() += hips.transpose();
   if (!started_) first_ = hips;
+  const Mat3 world = from_camera(lifted.pitch);
+  out.joints = (metres * lifted.size) * lifted.joints * turn.transpose();
+  out.joints.rowwise() += (hips - first_).transpose();
+  out.joints = (out.joints * world.transpose()).eval();
   stand(out.joints, dt);
-  out.joints.rowwise() -= Eigen::RowVector3f(first_.x(), 0, first_.z());
   started_ = true;
   for (int j = 0; j < kJointCount; ++j)
     out.confidence[j] = confidence_for(metres * lifted.size * lifted.off[j]);
   out.visibility = visibility_of(pose);
   if (lifted.turns) {
     out.global = *lifted.turns;
-    for (Mat3& R : *out.global) R = turn * R;
+    for (Mat3& R : *out.global) R = world * turn * R;
   }
   US_CHECK(out.joints.allFinite() && out.confidence.allFinite(),
            "the network that lifts 2D poses has no finite answer to a pose");

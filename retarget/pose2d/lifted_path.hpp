@@ -12,12 +12,13 @@ struct LiftedPose {
   Joints joints = Joints::Zero();       ///< around the middle of the hips; right, up, to the eye; of `size`
   Confidence off = Confidence::Zero();  ///< how far each is expected to be off, the same unit
   std::optional<Rotations> turns;       ///< world rotations in the same axes
+  float pitch = 0;                      ///< sine of how far the camera looks down, by this pose
   Vec2 origin = Vec2::Zero();           ///< where the middle of the hips is seen, pixels
   bool has_hips = true;                 ///< false: it is not, the seen points tell
   float size = 1;                       ///< pixels
 };
 
-/// Online. The camera is level and keeps still; what a picture does not tell of it is in LiftView.
+/// Online. The camera keeps still and is not rolled; what a picture does not tell of it is in LiftView.
 class LiftedPath {
  public:
   /// Throws Error as Lifter::reset.
@@ -27,6 +28,7 @@ class LiftedPath {
 
  private:
   float metres_a_pixel(const LiftedPose& lifted, float dt);
+  Mat3 from_camera(float told);
   void stand(Joints& joints, float dt);
 
   LiftView view_;
@@ -34,6 +36,8 @@ class LiftedPath {
   float log_stature_ = 0;      // of the person in the picture, pixels
   float floor_ = 0;            // how far the camera is above it, metres
   Vec3 first_ = Vec3::Zero();  // the middle of the hips when first seen, before the camera
+  double pitch_ = 0;           // mean of the sines that poses told
+  int poses_ = 0;
   bool started_ = false;
 };
 

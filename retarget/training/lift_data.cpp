@@ -2,27 +2,20 @@
 
 #include <algorithm>
 #include <array>
-#include <limits>
+#include <cmath>
 #include <utility>
 
-#include "retarget/base/error.hpp"
-#include "retarget/base/index.hpp"
 #include "retarget/keypoints/keypoint_filter.hpp"
 #include "retarget/math/rotation.hpp"
 #include "retarget/pose2d/lift_input.hpp"
-#include "retarget/training/proportion_data.hpp"
 
 namespace understudy::training {
 namespace {
 
-constexpr float kLiftedOdd = 0.4f, kLiftedBetween = 0.5f;   // shares of the people
-constexpr float kTurnedLifted = 0.3f, kLiftedTurn = 0.12f;  // share of the sequences; radians about each axis
-constexpr float kLiftedSlowest = 0.75f, kLiftedFastest = 1.33f;  // of the clip's own rate
-constexpr float kHalfRate = 0.25f;                               // share of the sequences
-constexpr float kNearestLifted = 1.5f;                           // metres before the eye
-constexpr float kNoFeet = 0.25f, kNoEyesAndEars = 0.1f;          // shares: layouts that lack them
-constexpr float kLimbAway = 0.25f;                               // share: a limb is not seen for a while
+constexpr float kNoFeet = 0.25f, kNoEyesAndEars = 0.1f;  // shares: layouts that lack them
+constexpr float kLimbAway = 0.25f;                       // share: a limb is not seen for a while
 constexpr float kLimbGoneInAFrame = 0.02f;
+constexpr float kBestLengths = 0.01f, kWorstLengths = 0.1f;  // how far those are off that are believed
 
 using PointList = std::array<int, 5>;
 constexpr std::array<PointList, 5> kTogether = {
@@ -62,55 +55,38 @@ void forget_away(const Away& away, int frame, FlatPose& pose) {
   if ((pose.body.col(2).head<kPaperPoints>().array() > 0).count() < 4) pose = whole;
 }
 
-/// Poses of the shot, on its person's legs.
-std::vector<Pose> poses_of(const LiftShot& shot, float template_leg) {
-  const float leg = leg_length(shot.person.rest) / template_leg;
-  std::vector<Pose> poses;
-  for (int i = 0; i < shot.frames; ++i) {
-    Pose pose = shot.clip->motion.poses[static_cast<size_t>(shot.first + i * shot.step)];
-    if (shot.mirrored) pose = mirrored(pose);
-    pose.root *= leg;
-    for (size_t j = 0; j < shot.turned.size(); ++j) pose.local[j] *= shot.turned[j];
-    poses.push_back(pose);
-  }
-  return poses;
+/// As a LengthReader might read them off a few poses: both sides alike.
+BoneLengths believed_lengths(BoneLengths lengths, float off, Rng& rng) {
+  for (int b = 0; b < kFlatBoneCount; ++b)
+    if (const int mirror = kFlatBoneMirror[static_cast<size_t>(b)]; mirror >= b) {
+      const float wrong = std::exp(off * rng.normal());
+      lengths[b] *= wrong;
+      if (mirror != b) lengths[mirror] *= wrong;
+    }
+  return lengths;
 }
 
-/// One that nobody comes too near.
-Pinhole view_of(const std::vector<Pose>& poses, Rng& rng) {
-  Vec3 middle = Vec3::Zero();
-  for (const Pose& pose : poses) middle += pose.root / static_cast<float>(poses.size());
-  for (;;) {
-    Pinhole camera = random_view(middle, {}, rng);
-    const bool is_near = std::any_of(poses.begin(), poses.end(), [&](const Pose& pose) {
-      return camera.project(pose.root).z() < kNearestLifted;
-    });
-    if (!is_near || camera.orthographic) return camera;
-  }
-}
-
-LiftSequence seen_sequence(const LiftShot& shot, float template_leg, const DetectorErrors& errors,
+LiftSequence seen_sequence(const FlatShot& shot, float template_leg, const LiftErrors& errors,
                            const Away& away, Rng& rng) {
-  const std::vector<Pose> poses = poses_of(shot, template_leg);
-  const Pinhole camera = view_of(poses, rng);
+  const ShotSight sight = seen_shot(shot, template_leg, rng);
   LiftSequence sequence;
-  sequence.dt = static_cast<float>(shot.step) / (shot.clip->motion.fps * shot.speed);
-  sequence.pitch = camera.rotation(1, 2);
+  sequence.dt = sight.dt;
+  sequence.pitch = sight.camera.rotation(1, 2);
+  sequence.lengths = believed_lengths(lengths_of(shot.person), errors.lengths, rng);
   KeypointFilter filter;
   for (int t = 0; t < shot.frames; ++t) {
-    const Pose& pose = poses[static_cast<size_t>(t)];
-    const FlatSight sight = seen_flat(shot.person, pose, camera);
-    FlatPose seen = detected(sight, errors, rng);
+    const Pose& pose = sight.poses[static_cast<size_t>(t)];
+    FlatPose seen = detected(seen_flat(shot.person, pose, sight.camera), errors.detector, rng);
     forget_away(away, t, seen);
     sequence.poses.push_back(filter.push(&seen, static_cast<double>(sequence.dt)).pose);
-    sequence.truth.push_back(lift_truth(forward_kinematics(shot.person.rest, pose), camera));
+    sequence.truth.push_back(lift_truth(forward_kinematics(shot.person.rest, pose), sight.camera));
   }
   return sequence;
 }
 
 }  // namespace
 
-LiftSequence lift_sequence(const LiftShot& shot, float template_leg, const DetectorErrors& errors, Rng& rng) {
+LiftSequence lift_sequence(const FlatShot& shot, float template_leg, const LiftErrors& errors, Rng& rng) {
   return seen_sequence(shot, template_leg, errors, {}, rng);
 }
 
@@ -125,7 +101,7 @@ void put_sequence(const LiftSequence& sequence, int64_t row, LiftBatch& batch) {
         *pitch = of_row(batch.pitch);
   LiftInput input;
   for (size_t t = 0; t < sequence.poses.size(); ++t) {
-    const LiftFrame frame = input.push(sequence.poses[t], sequence.dt);
+    const LiftFrame frame = input.push(sequence.poses[t], sequence.lengths, sequence.dt);
     const LiftTruth& truth = sequence.truth[t];
     Eigen::Map<Eigen::Matrix<float, 1, kLiftInputs>>(frames, 1, kLiftInputs) = frame.numbers;
     Eigen::Map<Joints>(joints, kJointCount, 3) = truth.joints * (truth.pixels_a_metre / frame.size);
@@ -139,49 +115,21 @@ void put_sequence(const LiftSequence& sequence, int64_t row, LiftBatch& batch) {
   }
 }
 
-LiftData::LiftData(TrainingData data, int frames)
-    : data_(std::move(data)),
-      frames_(frames),
-      people_(flat_people_of(data_)),
-      runs_(good_runs(data_.clips, frames, std::numeric_limits<int>::max())) {
-  US_CHECK(!runs_.empty(), "the data has no clip with ", frames, " frames in a row to learn lifting from");
-  for (const ClipRun& run : runs_) all_ += run.count;
-}
+LiftData::LiftData(TrainingData data, int frames) : shots_(std::move(data), frames) {}
 
 LiftSequence LiftData::random_sequence(Rng& rng) const {
-  const auto any = [&]() -> const FlatPerson& {
-    return people_[static_cast<size_t>(rng.below(ssize(people_)))];
-  };
-  LiftShot shot;
-  shot.person = any();
-  if (rng.chance(kLiftedBetween)) shot.person = between(shot.person, any(), rng.uniform());
-  if (rng.chance(kLiftedOdd)) shot.person = scaled_apart(shot.person, random_scales(rng));
-  size_t at = static_cast<size_t>(rng.below(ssize(runs_)));
-  if (rng.chance(0.5f)) {  // weighed by how long it is
-    int64_t frame = rng.below(static_cast<int>(all_));
-    for (at = 0; frame >= runs_[at].count; ++at) frame -= runs_[at].count;
-  }
-  const ClipRun& run = runs_[at];
-  shot.clip = &data_.clips[static_cast<size_t>(run.clip)];
-  shot.frames = frames_;
-  shot.step = rng.chance(kHalfRate) && run.count >= 2 * frames_ ? 2 : 1;
-  shot.first = run.first + rng.below(run.count - shot.step * (frames_ - 1));
-  shot.mirrored = rng.chance(0.5f);
-  shot.speed = rng.uniform(kLiftedSlowest, kLiftedFastest);
-  if (rng.chance(kTurnedLifted))
-    for (Mat3& turned : shot.turned) {
-      const float x = rng.normal(), y = rng.normal(), z = rng.normal();
-      turned = rotation_from_axis_angle(kLiftedTurn * Vec3(x, y, z));
-    }
-  DetectorErrors errors = random_errors(rng);
-  if (errors.limbs_missing > 0)
-    errors.limbs_missing = kLimbGoneInAFrame;  // whole limbs go for a while, see Away
-  const Away away = random_away(frames_, rng);
-  return seen_sequence(shot, data_.template_leg, errors, away, rng);
+  const FlatShot shot = shots_.random(rng);
+  LiftErrors errors;
+  errors.lengths = rng.uniform(kBestLengths, kWorstLengths);
+  errors.detector = random_errors(rng);
+  if (errors.detector.limbs_missing > 0)
+    errors.detector.limbs_missing = kLimbGoneInAFrame;  // whole limbs go for a while, see Away
+  const Away away = random_away(shot.frames, rng);
+  return seen_sequence(shot, shots_.template_leg(), errors, away, rng);
 }
 
 LiftBatch LiftData::batch(int count, Rng& rng) const {
-  LiftBatch batch = empty_lift_batch(count, frames_);
+  LiftBatch batch = empty_lift_batch(count, shots_.frames());
   for (int i = 0; i < count; ++i) put_sequence(random_sequence(rng), i, batch);
   return batch;
 }

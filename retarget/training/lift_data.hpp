@@ -6,9 +6,8 @@
 
 #include <vector>
 
-#include "retarget/pose2d/flat_people.hpp"
 #include "retarget/pose2d/lift_truth.hpp"
-#include "retarget/training/training_data.hpp"
+#include "retarget/training/flat_shots.hpp"
 
 namespace understudy::training {
 
@@ -24,24 +23,20 @@ struct LiftBatch {
 struct LiftSequence {
   std::vector<FlatPose> poses;
   std::vector<LiftTruth> truth;
-  float dt = 0, pitch = 0;  ///< seconds between frames; sine of the camera's pitch
+  BoneLengths lengths = BoneLengths::Ones();  ///< of the person, as they are believed to be
+  float dt = 0, pitch = 0;                    ///< seconds between frames; sine of the camera's pitch
 };
 
 /// Sequences of T frames into row `row` of a batch that has room for them.
 void put_sequence(const LiftSequence& sequence, int64_t row, LiftBatch& batch);
 LiftBatch empty_lift_batch(int64_t sequences, int64_t frames);
 
-/// How somebody is seen.
-struct LiftShot {
-  FlatPerson person;
-  const Clip* clip = nullptr;
-  int first = 0, step = 1, frames = 1;  ///< of the clip
-  bool mirrored = false;
-  float speed = 1;                          ///< of the clip's own
-  Rotations turned = identity_rotations();  ///< joints are bent so much further, all the time
+/// What is wrong about what is known of somebody.
+struct LiftErrors {
+  DetectorErrors detector;
+  float lengths = 0;  ///< standard deviation of the logarithms of the lengths that bones are believed to have
 };
-/// Everything with `errors` of a detector; points in `never` are not seen at all.
-LiftSequence lift_sequence(const LiftShot& shot, float template_leg, const DetectorErrors& errors, Rng& rng);
+LiftSequence lift_sequence(const FlatShot& shot, float template_leg, const LiftErrors& errors, Rng& rng);
 
 class LiftData {
  public:
@@ -53,11 +48,7 @@ class LiftData {
  private:
   LiftSequence random_sequence(Rng& rng) const;
 
-  TrainingData data_;
-  int frames_;
-  std::vector<FlatPerson> people_;
-  std::vector<ClipRun> runs_;
-  int64_t all_ = 0;  // frames in the runs
+  FlatShots shots_;
 };
 
 }  // namespace understudy::training

@@ -1,11 +1,8 @@
 #include "retarget/training/lift_step.hpp"
 
-#include <limits>
+#include <utility>
 
-#include "retarget/base/error.hpp"
-#include "retarget/base/index.hpp"
 #include "retarget/metrics/joint_metrics.hpp"
-#include "retarget/training/proportion_data.hpp"
 
 namespace understudy::training {
 namespace {
@@ -13,7 +10,7 @@ namespace {
 constexpr double kWayWeight = 1, kLengthWeight = 0.3, kOffWeight = 0.02, kTurnWeight = 0.1,
                  kPitchWeight = 0.1;
 constexpr uint64_t kLiftFigureSeed = 20210203;
-constexpr float kLiftFigureJitter = 0.015f;
+constexpr float kLiftFigureJitter = 0.015f, kLiftFigureLengths = 0.05f;
 
 torch::Tensor length_of(const torch::Tensor& ways) {
   return ways.square().sum(-1).add(1e-10).sqrt();
@@ -45,24 +42,18 @@ LossSum lift_loss(nn::LifterNet& net, const LiftBatch& batch, const torch::Devic
   return loss;
 }
 
-LiftFigures::LiftFigures(const TrainingData& data, int cases, int frames) {
-  const std::vector<FlatPerson> people = flat_people_of(data);
-  const std::vector<ClipRun> runs = good_runs(data.clips, frames, std::numeric_limits<int>::max());
-  US_CHECK(!runs.empty(), "the data has no clip with ", frames, " frames in a row to judge lifting on");
+LiftFigures::LiftFigures(TrainingData data, int cases, int frames) {
+  const FlatShots shots(std::move(data), frames);
   for (const bool noisy : {false, true}) {
     Rng rng(kLiftFigureSeed);
-    DetectorErrors errors;
-    if (noisy) errors.jitter_m = kLiftFigureJitter;
+    LiftErrors errors;
+    errors.lengths = kLiftFigureLengths;
+    if (noisy) errors.detector.jitter_m = kLiftFigureJitter;
     Suite& suite =
         suites_.emplace_back(Suite{noisy ? "noisy" : "clean", empty_lift_batch(cases, frames), {}});
     for (int i = 0; i < cases; ++i) {
-      const ClipRun& run = runs[static_cast<size_t>(rng.below(ssize(runs)))];
-      LiftShot shot;
-      shot.person = people[static_cast<size_t>(rng.below(ssize(people)))];
-      shot.clip = &data.clips[static_cast<size_t>(run.clip)];
-      shot.frames = frames;
-      shot.first = run.first + rng.below(run.count - frames + 1);
-      LiftSequence sequence = lift_sequence(shot, data.template_leg, errors, rng);
+      const FlatShot shot = shots.plain(rng);
+      LiftSequence sequence = lift_sequence(shot, shots.template_leg(), errors, rng);
       put_sequence(sequence, i, suite.batch);
       suite.truth.push_back(std::move(sequence.truth));
     }
@@ -74,7 +65,8 @@ Figures LiftFigures::of(nn::LifterNet& net, const torch::Device& device) const {
   Figures figures;
   for (const Suite& suite : suites_) {
     torch::Tensor state;
-    const auto joints = net(suite.batch.frames.to(device), state).joints.cpu().contiguous();
+    const auto told = net(suite.batch.frames.to(device), state);
+    const auto joints = told.joints.cpu().contiguous();
     const float* row = joints.data_ptr<float>();
     JointSequence predicted, truth;
     for (const auto& one : suite.truth)
@@ -83,6 +75,9 @@ Figures LiftFigures::of(nn::LifterNet& net, const torch::Device& device) const {
         truth.push_back(frame.joints);
         row += 3 * kJointCount;
       }
+    const auto pitch = told.pitch.cpu().mean(1).clamp(-1, 1).asin();
+    const auto off = (pitch - suite.batch.pitch.select(1, 0).asin()).abs().mean();
+    figures.push_back({std::string("pitch_deg_") + suite.name, off.item<double>() * 180 / M_PI});
     figures.push_back({std::string("n_mpjpe_mm_") + suite.name,
                        1000 * mean_joint_error(scaled_joints(predicted, truth), truth)});
     figures.push_back({std::string("pa_mpjpe_mm_") + suite.name,

@@ -17,9 +17,9 @@ LossSum lift_loss(nn::LifterNet& net, const LiftBatch& batch, const torch::Devic
 class LiftFigures {
  public:
   /// Throws Error when the data has no clip with as many frames in a row.
-  LiftFigures(const TrainingData& data, int cases, int frames);
-  /// mm of all 22 joints, middle of the hips on that of the truth, each frame in its best scale; clean and
-  /// noisy.
+  LiftFigures(TrainingData data, int cases, int frames);
+  /// mm of all 22 joints, middle of the hips on that of the truth, each frame in its best scale; degrees that
+  /// the camera's pitch is off that the whole sequence tells; clean and noisy.
   Figures of(nn::LifterNet& net, const torch::Device& device) const;
 
  private:

@@ -110,6 +110,7 @@ TEST(DocumentFile, OfTheProgramOfBeforeOpensAndIsWrittenAlike) {
   wanted.source.complete = 0, wanted.source.markers.clear();
   wanted.source.layout.clear(), wanted.source.canvas.clear(), wanted.source.point_edits.clear();
   wanted.source.stature = SourceOptions().stature, wanted.source.fov = SourceOptions().fov;
+  wanted.source.pitch.reset();
   wanted.source.smoothing = 1;
   wanted.flat.reset();
   for (Take& take : wanted.takes) {
@@ -148,7 +149,7 @@ TEST(DocumentFile, OfTheProgramOfBeforeOpensAndIsWrittenAlike) {
   for (const char* layers : {"source", "take"})
     for (const char* added : {"wireframe", "scene", "bones"}) view[layers].erase(added);
   for (const char* added : {"person", "people", "times", "complete", "markers", "layout", "canvas", "stature",
-                            "fov", "smoothing", "point_edits"})
+                            "fov", "pitch", "smoothing", "point_edits"})
     written["source"].erase(added);
   written.erase("bones");
   EXPECT_EQ(json_text(written), without);

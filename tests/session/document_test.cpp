@@ -98,6 +98,7 @@ const Changes& document_changes() {
       CHANGE(source.layout.clear()),
       CHANGE(source.stature = 1.7),
       CHANGE(source.fov = 40),
+      CHANGE(source.pitch.reset()),
       CHANGE(source.smoothing = 1),
       CHANGE(flat->ahead = true),
       CHANGE(source.point_edits.pop_back()),
@@ -248,8 +249,8 @@ const Changes& document_changes() {
   [[maybe_unused]] const auto& [second_path, matches] = SecondBody();
   [[maybe_unused]] const auto& [path, motion, betas, fps, import, follow, as_scan, clip, source_bones, quiet,
                                 with_truth, person, times, complete, markers, made, people, recipe,
-                                point_order, picture_size, stature, view_fov, calm, point_edits, edits] =
-      SourceOptions();
+                                point_order, picture_size, stature, view_fov, view_pitch, calm, point_edits,
+                                edits] = SourceOptions();
   [[maybe_unused]] const auto& [parts, cycles, coder] = BlendRecipe();
   [[maybe_unused]] const auto& [part_path, part_range, part_weight, part_checksum] = BlendPart();
   [[maybe_unused]] const auto& [range_first, range_last] = BlendRange();

@@ -144,7 +144,7 @@ SavedDocument full_document(const std::string& folder) {
   saved.document.takes = {take(folder), Take{}};
   saved.document.takes[1].target.path = folder + "/b.glb";
   saved.document.source.layout = "coco17", saved.document.source.canvas = "1280x720";
-  saved.document.source.stature = 1.5, saved.document.source.fov = 60;
+  saved.document.source.stature = 1.5, saved.document.source.fov = 60, saved.document.source.pitch = 12;
   saved.document.source.smoothing = 0.5f;
   saved.document.source.point_edits = {PointDrag{7, body25::LeftWrist, 20.5f, 30, 4},
                                        SidesExchange{3, 9, SidesExchange::Limbs::Legs}};

@@ -1,17 +1,16 @@
 // The shipped weights on the built-in person, whom they have never seen.
-#include "retarget/networks/lifter_network.hpp"
-
 #include <gtest/gtest.h>
 
 #include "retarget/base/error.hpp"
 #include "retarget/metrics/joint_metrics.hpp"
+#include "retarget/networks/networks.hpp"
 #include "tests/support/lifted_walk.hpp"
 
 namespace understudy {
 namespace {
 
 std::unique_ptr<Lifter> shipped_lifter() {
-  auto lifter = nn::load_network_lifter(US_SOURCE_DIR "/assets/weights/lifter.weights");
+  auto lifter = nn::load_lifter(US_SOURCE_DIR "/assets/weights");
   LiftView view;
   view.canvas = {720, 720};
   lifter->reset(view);
@@ -96,6 +95,7 @@ TEST(LifterNetwork, TenThousandFramesEndAsTheyBegan) {
     return error_mm({all.begin() + static_cast<std::ptrdiff_t>(all.size() / 2), all.end()},
                     {{walk.poses.begin() + static_cast<std::ptrdiff_t>(all.size() / 2), walk.poses.end()},
                      {walk.truth.begin() + static_cast<std::ptrdiff_t>(all.size() / 2), walk.truth.end()},
+                     walk.lengths,
                      walk.dt});
   };
   const double begins = round();

@@ -8,6 +8,7 @@
 #include "retarget/math/rotation.hpp"
 #include "retarget/networks/networks.hpp"
 #include "retarget/nn/weights_file.hpp"
+#include "retarget/pose2d/lengths_so_far.hpp"
 #include "retarget/pose2d/lift_input.hpp"
 #include "retarget/pose2d/lifted_path.hpp"
 #include "retarget/training/lift_step.hpp"
@@ -45,17 +46,19 @@ class LifterNetwork : public ::testing::Test {
     const TrainingData data = load_training_data(folder_.path(), Split::Train);
     const std::vector<ClipRun> runs = good_runs(data.clips, kFrames, 1000);
     Rng rng(seed);
-    LiftShot shot;
+    FlatShot shot;
     shot.person = flat_people_of(data).front();
     shot.clip = &data.clips[static_cast<size_t>(runs.front().clip)];
     shot.first = runs.front().first;
     shot.frames = kFrames;
-    return lift_sequence(shot, data.template_leg, random_errors(rng), rng);
+    return lift_sequence(shot, data.template_leg, {random_errors(rng), 0.05f}, rng);
   }
   std::string write_random_weights() const {
     torch::manual_seed(4);
     nn::LifterNet net;
     nn::save_weights(file("lifter.weights"), {"lifter", nn::kLifterVersion, {}}, *net);
+    fs::copy_file(US_SOURCE_DIR "/assets/weights/proportions.weights", file("proportions.weights"),
+                  fs::copy_options::overwrite_existing);
     return file("lifter.weights");
   }
 
@@ -75,11 +78,14 @@ std::vector<Extraction> by_module(nn::LifterNet& net, const LiftSequence& sequen
   const auto count = static_cast<int64_t>(sequence.poses.size());
   auto frames = torch::empty({2, count, kLiftInputs});
   std::vector<LiftFrame> plain;
+  const auto reader = nn::load_length_reader(US_SOURCE_DIR "/assets/weights");
   for (const int64_t row : {0, 1}) {
     LiftInput input;
+    LengthsSoFar lengths;
     for (int64_t t = 0; t < count; ++t) {
       const FlatPose& pose = sequence.poses[static_cast<size_t>(t)];
-      const LiftFrame frame = input.push(row == 0 ? pose : in_mirror(pose), sequence.dt);
+      const LiftFrame frame =
+          input.push(row == 0 ? pose : in_mirror(pose), lengths.push(pose, *reader), sequence.dt);
       if (row == 0) plain.push_back(frame);
       for (int i = 0; i < kLiftInputs; ++i) frames[row][t][i] = frame.numbers[i];
     }
@@ -100,6 +106,7 @@ std::vector<Extraction> by_module(nn::LifterNet& net, const LiftSequence& sequen
           std::exp((told.log_off[0][t][j].item<float>() + told.log_off[1][t][m].item<float>()) / 2);
     }
     const LiftFrame& frame = plain[static_cast<size_t>(t)];
+    lifted.pitch = (told.pitch[0][t].item<float>() + told.pitch[1][t].item<float>()) / 2;
     lifted.origin = frame.origin, lifted.has_hips = frame.has_hips, lifted.size = frame.size;
     extractions.push_back(path.push(lifted, sequence.poses[static_cast<size_t>(t)], sequence.dt));
   }
