@@ -91,6 +91,7 @@ struct TakeState {
   std::shared_ptr<const SafeBinding> binding;
   std::shared_ptr<const RowMatrix> weights;  ///< [V, 22], edited
   std::shared_ptr<const Deformer> deformer;  ///< bound to the target, with those weights
+  FaceMarks face;                            ///< found on the head's surface by those weights
   SharedFrames<KeptFrame> performed;         ///< the engine's frames
   std::string rights;                        ///< what files made of them have to say; empty: nothing
   SharedFrames<KeptSource> another;          ///< who is performed, where that is not the source's person
@@ -164,14 +165,16 @@ struct Question {
 };
 
 /// What the mouse does in the views.
-enum class Tool { Look, Joints, Bones, TargetJoints, Paint, Crop, RestPose };
-constexpr Names<7> kToolNames{"look", "joints", "bones", "target-joints", "paint", "crop", "rest-pose"};
-constexpr Names<7> kToolLabels{
-    "Look around",        "Drag extracted joints", "Pose bones",    "Place the target's joints",
-    "Paint skin weights", "Crop the scan",         "Edit rest pose"};  ///< on the screen
+enum class Tool { Look, Joints, Bones, TargetJoints, Paint, Crop, RestPose, Face };
+constexpr Names<8> kToolNames{"look",  "joints", "bones",     "target-joints",
+                              "paint", "crop",   "rest-pose", "face"};
+constexpr Names<8> kToolLabels{"Look around",        "Drag extracted joints",
+                               "Pose bones",         "Place the target's joints",
+                               "Paint skin weights", "Crop the scan",
+                               "Edit rest pose",     "Place the face's marks"};  ///< on the screen
 /// Whether a tool works on the target before it performs, which is then seen instead of a frame.
 constexpr bool is_of_rest(Tool tool) {
-  return tool == Tool::TargetJoints || tool == Tool::RestPose;
+  return tool == Tool::TargetJoints || tool == Tool::RestPose || tool == Tool::Face;
 }
 
 struct Session {

@@ -7,6 +7,7 @@
 #include <thread>
 
 #include "app/run/keypoint_source.hpp"
+#include "app/run/pose_pictures.hpp"
 #include "app/session/background.hpp"
 #include "app/session/command_sets.hpp"
 #include "app/session/taught_styles.hpp"
@@ -323,6 +324,9 @@ void Studio::apply_weights(size_t k) {
   applied.weights = weights_wanted;
   ++state.generation;
 }
+  ExportBody body{state.character, state.deformer, {}};
+  body.file.joints = state.target->joints;
+  state.face = marks_of(body).face;
 
 /// Painted weights that do not fit are asked about, one take after the other.
 void Studio::ask_about_paint() {

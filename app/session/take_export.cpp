@@ -152,7 +152,7 @@ ExportInput input_of(const Session& session, const std::vector<size_t>& takes, c
     add_clip(out, session, k, takes.size() > 1 ? name : clip_name(session, take));
     rights.push_back(session.takes[k].rights);
   }
-  out.body = {state.character, state.deformer, choice.file, choice.poses};
+  out.body = {state.character, state.deformer, choice.file, choice.poses, take.target_edits.face};
   if (choice.pane_camera) out.body.poses.camera = camera_of_view(session, takes[0]);
   out.body.file.rights = joined_once(rights, "; ");
   const bool own = on_their_rig(take.target, *state.character);

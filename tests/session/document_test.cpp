@@ -164,6 +164,9 @@ const Changes& document_changes() {
       TAKE(target_edits.joints[0].mirror = true),
       TAKE(target_edits.weights.reset()),
       TAKE(target_edits.rest_pose.pop_back()),
+      TAKE(target_edits.face.pop_back()),
+      TAKE(target_edits.face[0].mark = FaceMark::LeftEar),
+      TAKE(target_edits.face[0].place.y() = 0),
       TAKE(target_edits.rest_pose[0].joint = RightCollar),
       TAKE(target_edits.rest_pose[0].axis_angle.z() = 0),
       {"weights.vertex",
@@ -271,7 +274,8 @@ const Changes& document_changes() {
   [[maybe_unused]] const auto& [by, length, anticipation, stroke, recovery, unlike, tempo_marks] =
       TempoEdit();
   [[maybe_unused]] const auto& [mark_frame, later] = TempoMark();
-  [[maybe_unused]] const auto& [moves, weights, rest_pose] = TargetEdits();
+  [[maybe_unused]] const auto& [moves, weights, rest_pose, face] = TargetEdits();
+  [[maybe_unused]] const auto& [face_mark, face_place] = FaceMove();
   [[maybe_unused]] const auto& [turned_joint, axis_angle] = BoneTurn();
   [[maybe_unused]] const auto& [moved, position, mirror] = JointMove();
   [[maybe_unused]] const auto& [vertex, rows, places, of] = WeightRows();
@@ -353,7 +357,8 @@ Document made_anew(Document document) {
       std::remove_if(takes.begin(), takes.end(), [](const Take& take) { return take.flat.has_value(); }),
       takes.end());
   for (Take& take : document.takes)
-    take.name.clear(), take.target_edits.weights.reset(), take.pose_edits = {};
+    take.name.clear(), take.target_edits.weights.reset(), take.target_edits.face.clear(),
+        take.pose_edits = {};
   return document;
 }
 

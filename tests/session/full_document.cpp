@@ -60,6 +60,7 @@ Take take(const std::string& folder) {
   take.target_edits.joints = {{LeftWrist, Vec3(0.7f, 1.4f, 0.02f), false}, {Spine1, Vec3(0, 1.1f, 0), true}};
   take.target_edits.weights = weight_rows();
   take.target_edits.rest_pose = {{LeftShoulder, Vec3(0, 0.1f, -0.75f)}};
+  take.target_edits.face = {{FaceMark::RightEye, Vec3(-0.03f, 1.6f, 1 / 9.0f)}};
   take.pose_edits = pose_edits();
   return take;
 }
