@@ -78,6 +78,22 @@ TEST_F(FlatStudioTest, ASlidLengthIsPerformedOnBothSidesAndUndone) {
   EXPECT_FLOAT_EQ(length_in(result(studio).poses[2], flat_bone::LeftForearm), before);
 }
 
+TEST_F(FlatStudioTest, SlidesOfTwoBonesAreTwoStepsHoweverSoon) {
+  Studio studio(services());
+  open_flat(studio);
+  const float forearm = result(studio).lengths.length[flat_bone::LeftForearm];
+  for (const char* const pixels : {"100", "120"}) studio.run("flat.length", {"0", "left_thigh", pixels});
+  for (const char* const pixels : {"70", "90"}) studio.run("flat.length", {"0", "left_forearm", pixels});
+  for (const char* const point : {"left_wrist", "right_wrist"})
+    studio.run("flat.drag", {"3", point, "260", "90", "0"});
+  studio.run("edit.undo");
+  EXPECT_EQ(studio.session().document.source.point_edits.size(), 1u);
+  studio.run("edit.undo"), studio.run("edit.undo");
+  studio.wait_idle();
+  EXPECT_FLOAT_EQ(result(studio).lengths.length[flat_bone::LeftForearm], forearm);
+  EXPECT_FLOAT_EQ(result(studio).lengths.length[flat_bone::LeftThigh], 120) << "one slide is one step";
+}
+
 TEST_F(FlatStudioTest, ALockedLengthStaysWhenTheOtherSideOrThePersonGrows) {
   Studio studio(services());
   open_flat(studio);
