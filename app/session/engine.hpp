@@ -68,6 +68,7 @@ struct SourceCompleting {
 /// The source cannot be opened, or reading it failed.
 struct SourceFailed {
   std::string sentence;
+  bool wants_canvas = false;  ///< 2D poses of a picture of unknown size
 };
 /// Frames of the source from `first` on, new or redone.
 struct SourceFrames {

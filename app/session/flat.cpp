@@ -42,6 +42,7 @@ struct FlatJob {
   std::shared_ptr<const FlatPoses> poses;
   std::map<std::string, std::shared_ptr<const FlatReference>> references;  // by file and person
   std::string problem;                                                     // of the source
+  bool wants_canvas = false;                                               // what that is
   int64_t job = 0;                                                         // the UI thread's own
   bool cancelled = false;
 };
@@ -161,7 +162,12 @@ void make_flat(FlatJob& work, JobControl& control) {
     US_CHECK(work.load_lengths, "there is no network here that reads proportions off 2D poses");
     if (!work.lengths) work.lengths = work.load_lengths();
     control.progress(0.1f);
-    read_source(work);
+    try {
+      read_source(work);
+    } catch (const CanvasUnknownError&) {
+      work.wants_canvas = true;
+      throw;
+    }
   });
   if (!work.problem.empty()) work.poses.reset();
   if (!work.lengths) return;
@@ -266,7 +272,7 @@ void Studio::take_in_flat(FlatJob& work) {
   if (work.cancelled) return;
   if (work.has_source && session_.document.source.path == work.source.path) {
     if (!work.problem.empty()) {
-      SourceFailed failed{work.problem};
+      SourceFailed failed{work.problem, work.wants_canvas};
       return take_in(failed);
     }
     show_flat_source(work);

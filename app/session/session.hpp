@@ -154,10 +154,11 @@ struct Failure {
 
 /// A question that the user must answer before the studio continues.
 struct Question {
-  enum class Kind { UnsavedChanges, Recover, MissingFiles, PaintMisfit, NotAPerson, UnsavedStudy };
+  enum class Kind { UnsavedChanges, Recover, MissingFiles, PaintMisfit, NotAPerson, UnsavedStudy, Canvas };
   Kind kind = Kind::UnsavedChanges;
   std::string text{};
-  std::string then{};                  ///< the command to continue with ("app.quit", "document.open PATH")
+  std::string then{};  ///< the command to continue with ("app.quit", "document.open PATH"); Canvas: its
+                       ///< last argument, WIDTHxHEIGHT, is the answer
   std::vector<std::string> missing{};  ///< MissingFiles: the missing paths
   std::vector<Autosave> autosaves{};   ///< Recover
   int take =
