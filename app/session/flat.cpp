@@ -26,7 +26,7 @@ struct FlatJob {
     std::string problem;
     bool not_opened = false;  // its file is to blame
   };
-  std::string key, raw_key, poses_key;
+  std::string key, raw_key, cleaned_key, poses_key;
   bool has_source = false;
   FlatSourceOptions source;
   FlatSource how;
@@ -39,7 +39,7 @@ struct FlatJob {
 
   std::shared_ptr<const LengthReader> lengths;
   std::shared_ptr<const KeypointReading> raw;
-  std::shared_ptr<const FlatPoses> poses;
+  std::shared_ptr<const FlatPoses> cleaned, poses;                         // before edits, and after
   std::map<std::string, std::shared_ptr<const FlatReference>> references;  // by file and person
   std::string problem;                                                     // of the source
   bool wants_canvas = false;                                               // what that is
@@ -63,17 +63,22 @@ float mean_confidence(const FlatPose& pose) {
   return seen > 0 ? pose.body.col(2).sum() / static_cast<float>(seen) : 0;
 }
 
-FlatPoses poses_of(const FlatJob& work) {
+/// Without edits.
+FlatPoses cleaned_poses(const FlatJob& work) {
   FlatPoses poses;
   poses.reading = *work.raw;
   KeypointReading& reading = poses.reading;
   reading.performer = performer_of(reading, work.person);
-  exchange_sides(work.source_edits, reading.tracks[static_cast<size_t>(reading.performer)]);
   KeypointFilterOptions filter;
   filter.smoothing = work.smoothing;
   poses.clean = clean_track(reading, reading.performer, filter);
-  drag_points(work.source_edits, poses.clean);
   poses.lengths = proportions_of(reading, *work.lengths);
+  return poses;
+}
+
+FlatPoses edited_poses(const FlatJob& work) {
+  FlatPoses poses = *work.cleaned;
+  edit_track(work.source_edits, poses.clean);
   for (const CleanPose& clean : poses.clean)
     poses.confidence.push_back(clean.is_usable ? mean_confidence(clean.pose) : 0);
   return poses;
@@ -82,7 +87,8 @@ FlatPoses poses_of(const FlatJob& work) {
 void read_source(FlatJob& work) {
   if (!work.has_source) return;
   if (!work.raw) work.raw = std::make_shared<const KeypointReading>(open_keypoints(work.source));
-  if (!work.poses) work.poses = std::make_shared<const FlatPoses>(poses_of(work));
+  if (!work.cleaned) work.cleaned = std::make_shared<const FlatPoses>(cleaned_poses(work));
+  if (!work.poses) work.poses = std::make_shared<const FlatPoses>(edited_poses(work));
 }
 
 FlatReference reference_of(const FlatJob::Wanted& take, const LengthReader& lengths) {
@@ -195,6 +201,13 @@ SourceFrames source_frames(const FlatPoses& poses) {
   return event;
 }
 
+/// As the document has it, and what the mouse drags now.
+SourceOptions source_with_drag(const Session& session) {
+  SourceOptions source = session.document.source;
+  if (const auto& dragging = session.flat.dragging) add_drag(*dragging, source.point_edits);
+  return source;
+}
+
 bool wants_flat(const Document& document) {
   return document.flat || std::any_of(document.takes.begin(), document.takes.end(),
                                       [](const Take& take) { return take.flat.has_value(); });
@@ -208,10 +221,11 @@ void Studio::follow_flat() {
   const Document& document = session_.document;
   if (!wants_flat(document)) {
     if (session_.flat.poses) ++session_.flat.generation;
-    session_.flat.poses.reset(), b.flat_key.clear(), b.flat_shown.clear();
+    session_.flat.poses.reset(), session_.flat.dragging.reset();
+    b.flat_key.clear(), b.flat_shown.clear();
     return;
   }
-  std::string key = key_of(document.flat, document.source, performs_in_space(document));
+  std::string key = key_of(document.flat, source_with_drag(session_), performs_in_space(document));
   for (size_t k = 0; k < document.takes.size(); ++k)
     if (const Take& take = document.takes[k]; take.flat)
       key += key_of(b.take_ids[k], take.target.path, take.flat);
@@ -237,8 +251,9 @@ void Studio::start_flat(std::string key) {
     work->person = document.source.person;
     work->raw_key =
         key_of(document.source.path, document.source.fps, document.source.canvas, document.source.layout);
-    work->smoothing = document.source.smoothing, work->source_edits = document.source.point_edits;
-    work->poses_key = work->raw_key + key_of(work->person, work->smoothing, work->source_edits);
+    work->smoothing = document.source.smoothing, work->source_edits = source_with_drag(session_).point_edits;
+    work->cleaned_key = work->raw_key + key_of(work->person, work->smoothing);
+    work->poses_key = work->cleaned_key + key_of(work->source_edits);
   }
   for (size_t k = 0; k < document.takes.size(); ++k)
     if (const Take& take = document.takes[k]; take.flat)
@@ -248,6 +263,7 @@ void Studio::start_flat(std::string key) {
   if (const auto& last = b.flat_work) {
     work->lengths = last->lengths;
     if (last->raw_key == work->raw_key) work->raw = last->raw;
+    if (last->cleaned_key == work->cleaned_key) work->cleaned = last->cleaned;
     if (last->poses_key == work->poses_key) work->poses = last->poses;
     for (const FlatJob::Wanted& take : work->takes)
       if (const auto known = last->references.find(take.path + '\n' + take.how.person);

@@ -219,9 +219,7 @@ std::string words_of(std::string name) {
   return name;
 }
 
-/// A drag that goes on takes the place of the one before.
-void drag_point(Call& c) {
-  auto& edits = poses_of(c).point_edits;
+PointDrag drag_of(const Call& c) {
   const auto& poses = c.session.flat.poses;
   US_CHECK(poses, "the source is still being read");
   PointDrag drag;
@@ -232,17 +230,28 @@ void drag_point(Call& c) {
   drag.point = point_of(c, 1);
   drag.x = c.number(2, "x"), drag.y = c.number(3, "y");
   drag.falloff = c.arguments.size() > 4 ? c.clamped(4, "falloff", 0, 1000) : c.session.falloff;
+  return drag;
+}
+
+void drag_point(Call& c) {
+  auto& edits = poses_of(c).point_edits;
+  const PointDrag drag = drag_of(c);
   c.label = std::string("Drag ") + words_of(kBodyPointNames[static_cast<size_t>(drag.point)]);
-  if (!edits.empty())
-    if (const auto* const last = std::get_if<PointDrag>(&edits.back()))
-      if (last->frame == drag.frame && last->point == drag.point) edits.pop_back();
-  edits.emplace_back(drag);
+  add_drag(drag, edits);
+  c.session.flat.dragging.reset();
 }
 
 void add_by_hand(Commands& commands) {
   commands.add_slider(
       {"flat.drag", "Drag a point", "FRAME POINT X Y [FALLOFF]: to a place of the canvas, pixels"},
       drag_point);
+  commands.add({"flat.dragging", "While a point is dragged", "as flat.drag, or none: shown, but no edit yet"},
+               [](Call& c) {
+                 poses_of(c);
+                 auto& dragging = c.session.flat.dragging;
+                 dragging.reset();
+                 if (c.word(0, "frame") != "none") dragging = drag_of(c);
+               });
   commands.add_edit({"flat.exchange", "Exchange left and right", "FIRST LAST [arms|legs|both]: frames"},
                     exchange_flat_sides);
   commands.add_edit({"flat.edit_remove", "Remove an edit of 2D poses", "NUMBER: from 0"}, [](Call& c) {

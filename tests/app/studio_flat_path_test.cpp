@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <fstream>
+#include <nlohmann/json.hpp>
 
 #include "app/run/exports.hpp"
 #include "render/image.hpp"
@@ -13,6 +15,8 @@
 
 namespace understudy::app {
 namespace {
+
+using Json = nlohmann::json;
 
 class FlatPath : public ApplicationTest {
  protected:
@@ -62,12 +66,63 @@ TEST_F(FlatPath, PointsAreDraggedAndSidesExchangedOverARange) {
   play("expect_value undo_label \"Drag left wrist\"\nkey Ctrl+Z\nwait\nframes 3");
   EXPECT_EQ(source().clean[5].pose.at(body25::LeftWrist), before);
 
-  const Vec2 hip = source().reading.performing().at(3)->at(body25::LeftHip);
+  const Vec2 hip = source().clean[3].pose.at(body25::LeftHip);
   play("playback.frame 2\nclick timeline.in\nplayback.frame 4\nclick timeline.out\nframes 3");
   play("click flat.exchange\nwait\nframes 3\nexpect flat.edit.0");
-  EXPECT_NE(source().reading.performing().at(3)->at(body25::LeftHip), hip);
+  EXPECT_NE(source().clean[3].pose.at(body25::LeftHip), hip);
   play("expect timeline.track.point.0\nclick flat.edit.0\nwait\nframes 3\nexpect_no flat.edit.0");
-  EXPECT_EQ(source().reading.performing().at(3)->at(body25::LeftHip), hip);
+  EXPECT_EQ(source().clean[3].pose.at(body25::LeftHip), hip);
+}
+
+TEST_F(FlatPath, APointThatIsHeldIsPerformedBeforeItIsLetGo) {
+  open_flat();
+  play("playback.frame 5\nwait\nframes 3\nclick flat.tool\nframes 3");
+  const Vec2 performed = result().poses[5].at(body25::LeftWrist);
+  play("flat.dragging 5 left_wrist 260 90\nwait\nframes 3");
+  EXPECT_EQ(source().clean[5].pose.at(body25::LeftWrist), Vec2(260, 90));
+  const Vec2 held = result().poses[5].at(body25::LeftWrist);
+  EXPECT_GT((held - performed).norm(), 20);
+  EXPECT_TRUE(session().document.source.point_edits.empty()) << "no edit yet";
+  play("flat.drag 5 left_wrist 260 90\nwait\nframes 3");
+  EXPECT_EQ(result().poses[5].at(body25::LeftWrist), held);
+  play("key Ctrl+Z\nwait\nframes 3");
+  EXPECT_EQ(result().poses[5].at(body25::LeftWrist), performed) << "one drag is one step";
+  play("flat.dragging 5 left_wrist 260 90\nwait\nframes 3\nflat.dragging none\nwait\nframes 3");
+  EXPECT_EQ(result().poses[5].at(body25::LeftWrist), performed);
+}
+
+TEST_F(FlatPath, AFileThatDoesNotSayHowLargeItsPictureIsAsks) {
+  Json frames = Json::array();
+  for (int t = 0; t < 6; ++t) {
+    Json landmarks = Json::array();
+    for (int k = 0; k < 33; ++k)
+      landmarks.push_back(
+          {{"x", 0.3 + 0.01 * (k % 7)}, {"y", 0.2 + 0.02 * k}, {"z", 0}, {"visibility", 0.9}});
+    frames.push_back(landmarks);
+  }
+  std::ofstream(path("mediapipe.json")) << frames;
+  make(render::ContextKind::Null, {1280, 1200});
+  play("drop " + path("mediapipe.json") + "\nwait\nframes 3\nexpect canvas.open\nexpect_no error.close");
+  play("click canvas.cancel\nframes 3\nexpect_no canvas.open");
+  EXPECT_TRUE(session().document.source.path.empty());
+  play("drop " + path("mediapipe.json") +
+       "\nwait\nframes 3\nclick canvas.size\nframes 2\nclick canvas.size.1");
+  play("frames 2\nclick canvas.open\nframes 3\nwait\nframes 3\nexpect_value frames 6");
+  EXPECT_EQ(source().reading.canvas, (Canvas{1280, 720}));
+  play("document.save_as \"" + path("mp.understudy") + "\"\nwait");
+  make(render::ContextKind::Null, {1280, 1200});
+  play("open \"" + path("mp.understudy") +
+       "\"\nwait\nframes 3\nexpect_no canvas.open\nexpect_value frames 6");
+}
+
+TEST_F(FlatPath, AFolderOfPosesIsOpenedInTheFileWindow) {
+  make(render::ContextKind::Null, {1280, 800});
+  play("dialog.open open_source\nframes 5");
+  play("key Ctrl+L\nkey Ctrl+A\ntype \"" + folder_.string() + "\"\nkey Enter\nframes 30");
+  play(
+      "expect browser.entry.track\nclick browser.entry.track\nframes 3\nclick browser.accept\nwait\nframes "
+      "3");
+  play("expect_value frames 12\nexpect view.0");
 }
 
 TEST_F(FlatPath, AClickOnAnotherPersonLetsThemPerform) {

@@ -123,9 +123,7 @@ TEST_F(FlatStudioTest, ADraggedPointIsWhereItWasPutAndPerformed) {
 TEST_F(FlatStudioTest, SidesAreExchangedOverARangeAndBackAgain) {
   Studio studio(services());
   open_flat(studio);
-  const auto hip = [&](int t) {
-    return studio.session().flat.poses->reading.performing().at(t)->at(body25::LeftHip);
-  };
+  const auto hip = [&](size_t t) { return studio.session().flat.poses->clean[t].pose.at(body25::LeftHip); };
   const Vec2 before = hip(4), outside = hip(6);
   studio.run("edit.swap", {"2", "4", "legs"});
   studio.wait_idle();
@@ -134,6 +132,24 @@ TEST_F(FlatStudioTest, SidesAreExchangedOverARangeAndBackAgain) {
   studio.run("flat.exchange", {"2", "4", "legs"});
   studio.wait_idle();
   EXPECT_EQ(hip(4), before);
+}
+
+TEST_F(FlatStudioTest, AnExchangeOverrulesSidesThatWerePutBack) {
+  KeypointReading track = walking_track(24);
+  for (TrackedPose& pose : track.tracks[0].poses)
+    if (pose.frame >= 10 && pose.frame < 14) pose.pose = sides_exchanged(pose.pose);
+  write_openpose_folder(path("swapped"), track);
+  Studio studio(services());
+  studio.run("open", {path("swapped")});
+  studio.wait_idle();
+  const auto clean = [&](size_t t) { return studio.session().flat.poses->clean[t]; };
+  const CleanPose mended = clean(11), outside = clean(16);
+  ASSERT_TRUE(mended.sides_mended);
+  studio.run("flat.exchange", {"10", "13"});
+  studio.wait_idle();
+  EXPECT_EQ(clean(11).pose, sides_exchanged(mended.pose)) << "as the file has it";
+  EXPECT_TRUE(clean(11).problem.empty()) << clean(11).problem;
+  EXPECT_EQ(clean(16).pose, outside.pose);
 }
 
 TEST_F(FlatStudioTest, AnotherPersonPerforms) {
