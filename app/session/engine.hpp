@@ -101,6 +101,7 @@ struct TakeFailed {
   std::string sentence;
   bool not_opened = false;    ///< its target's file is to blame
   bool not_a_person = false;  ///< the target could be used all the same
+  bool wants_canvas = false;  ///< as SourceFailed
 };
 /// Frames of a take from `first` on, new or redone.
 struct TakeFrames {

@@ -25,6 +25,7 @@ struct FlatJob {
     std::shared_ptr<const FlatResult> result;
     std::string problem;
     bool not_opened = false;  // its file is to blame
+    bool wants_canvas = false;
   };
   std::string key, raw_key, cleaned_key, poses_key;
   bool has_source = false;
@@ -40,7 +41,7 @@ struct FlatJob {
   std::shared_ptr<const LengthReader> lengths;
   std::shared_ptr<const KeypointReading> raw;
   std::shared_ptr<const FlatPoses> cleaned, poses;                         // before edits, and after
-  std::map<std::string, std::shared_ptr<const FlatReference>> references;  // by file and person
+  std::map<std::string, std::shared_ptr<const FlatReference>> references;  // by reference_key
   std::string problem;                                                     // of the source
   bool wants_canvas = false;                                               // what that is
   int64_t job = 0;                                                         // the UI thread's own
@@ -91,10 +92,15 @@ void read_source(FlatJob& work) {
   if (!work.poses) work.poses = std::make_shared<const FlatPoses>(edited_poses(work));
 }
 
+std::string reference_key(const FlatJob::Wanted& take) {
+  return key_of(take.path, take.how.person, take.how.canvas);
+}
+
 FlatReference reference_of(const FlatJob::Wanted& take, const LengthReader& lengths) {
   FlatReference reference;
   FlatSourceOptions options;
   options.path = take.path, options.person = take.how.person;
+  if (!take.how.canvas.empty()) options.canvas = parse_canvas(take.how.canvas);
   if (is_proportions_file(take.path)) {
     reference.target = open_flat_target(options, lengths, reference.told);
     return reference;
@@ -138,9 +144,14 @@ void add_figures(const FlatPoses& source, const LengthReader& lengths, FlatResul
 }
 
 void perform(FlatJob& work, FlatJob::Wanted& take) {
-  auto& reference = work.references[take.path + '\n' + take.how.person];
+  auto& reference = work.references[reference_key(take)];
   take.not_opened = !reference;
-  if (!reference) reference = std::make_shared<const FlatReference>(reference_of(take, *work.lengths));
+  try {
+    if (!reference) reference = std::make_shared<const FlatReference>(reference_of(take, *work.lengths));
+  } catch (const CanvasUnknownError&) {
+    take.wants_canvas = true;
+    throw;
+  }
   take.not_opened = false;
   FlatResult result;
   result.reference = reference;
@@ -257,7 +268,7 @@ void Studio::start_flat(std::string key) {
   }
   for (size_t k = 0; k < document.takes.size(); ++k)
     if (const Take& take = document.takes[k]; take.flat)
-      work->takes.push_back({b.take_ids[k], take.target.path, *take.flat, nullptr, "", false});
+      work->takes.push_back({b.take_ids[k], take.target.path, *take.flat, nullptr, "", false, false});
   work->load_lengths = services_.lengths;
   work->make_engine = services_.flat_engine;
   if (const auto& last = b.flat_work) {
@@ -266,7 +277,7 @@ void Studio::start_flat(std::string key) {
     if (last->cleaned_key == work->cleaned_key) work->cleaned = last->cleaned;
     if (last->poses_key == work->poses_key) work->poses = last->poses;
     for (const FlatJob::Wanted& take : work->takes)
-      if (const auto known = last->references.find(take.path + '\n' + take.how.person);
+      if (const auto known = last->references.find(reference_key(take));
           known != last->references.end() && known->second)
         work->references.insert(*known);
   }
@@ -297,7 +308,7 @@ void Studio::take_in_flat(FlatJob& work) {
     TakeState* const take = take_of(wanted.id);
     if (take == nullptr) continue;
     if (!wanted.problem.empty()) {
-      TakeFailed failed{wanted.id, wanted.problem, wanted.not_opened, false};
+      TakeFailed failed{wanted.id, wanted.problem, wanted.not_opened, false, wanted.wants_canvas};
       take_in(failed);
       continue;
     }

@@ -182,6 +182,14 @@ void add_proportions(Commands& commands) {
   commands.add({"flat.save_proportions", "Save proportions", "TAKE PATH"}, save_lengths);
 }
 
+/// "" for auto. Throws Error for what is no canvas.
+std::string canvas_argument(const Call& c, size_t i) {
+  const std::string& text = c.word(i, "canvas");
+  if (text == "auto") return "";
+  parse_canvas(text);
+  return text;
+}
+
 void add_manner(Commands& commands) {
   commands.add_edit({"flat.place", "Placement", "TAKE reference|source: where the result stands"},
                     [](Call& c) { set_flat(flat_of(c), "place", ArgumentReader({c.word(1, "place")})); });
@@ -199,11 +207,10 @@ void add_manner(Commands& commands) {
   commands.add_slider({"flat.smoothing", "Smoothing of 2D poses", "FACTOR: 0 to 4, 1 as tuned"}, [](Call& c) {
     poses_of(c).smoothing = c.clamped(0, "factor", kFlatSmoothing.low, kFlatSmoothing.high);
   });
-  commands.add_edit({"flat.canvas", "Canvas of 2D poses", "WIDTHxHEIGHT|auto"}, [](Call& c) {
-    const std::string& text = c.word(0, "canvas");
-    if (text != "auto") parse_canvas(text);
-    poses_of(c).canvas = text == "auto" ? "" : text;
-  });
+  commands.add_edit({"flat.canvas", "Canvas of 2D poses", "WIDTHxHEIGHT|auto"},
+                    [](Call& c) { poses_of(c).canvas = canvas_argument(c, 0); });
+  commands.add_edit({"flat.target_canvas", "Canvas of the target's 2D poses", "TAKE WIDTHxHEIGHT|auto"},
+                    [](Call& c) { flat_of(c).canvas = canvas_argument(c, 1); });
 }
 
 int point_of(const Call& c, size_t i) {

@@ -108,6 +108,7 @@ const Changes& document_changes() {
       CHANGE(takes[1].flat->touches = true),
       CHANGE(takes[1].flat->growth = true),
       CHANGE(takes[1].flat->person.clear()),
+      CHANGE(takes[1].flat->canvas.clear()),
       CHANGE(takes[1].flat->lengths[0].bone = "trunk"),
       CHANGE(takes[1].flat->lengths[0].pixels = 1),
       CHANGE(takes[1].flat->lengths[0].locked = false),
@@ -244,7 +245,8 @@ const Changes& document_changes() {
   [[maybe_unused]] const auto& [ahead] = FlatSource();
   [[maybe_unused]] const auto& [point_frame, point, point_x, point_y, point_falloff] = PointDrag();
   [[maybe_unused]] const auto& [sides_first, sides_last, sides] = SidesExchange();
-  [[maybe_unused]] const auto& [flat_engine, place, touches, grows, flat_person, flat_lengths] = FlatTake();
+  [[maybe_unused]] const auto& [flat_engine, place, touches, grows, flat_person, flat_canvas, flat_lengths] =
+      FlatTake();
   [[maybe_unused]] const auto& [bone, pixels, locked] = ChosenLength();
   [[maybe_unused]] const auto& [canvas_x, canvas_y, zoom] = CanvasView();
   [[maybe_unused]] const auto& [wanted, most, bone_edits, second] = OwnBones();

@@ -151,7 +151,7 @@ SavedDocument full_document(const std::string& folder) {
                                        SidesExchange{3, 9, SidesExchange::Limbs::Legs}};
   saved.document.flat = FlatSource{false};
   saved.document.takes[1].flat =
-      FlatTake{"paper", FlatPlace::Source, false, false, "2", {{"left_thigh", 120.5f, true}}};
+      FlatTake{"paper", FlatPlace::Source, false, false, "2", "640x360", {{"left_thigh", 120.5f, true}}};
   saved.view = view();
   saved.playback.loop = false;
   saved.playback.rate = 0.25;

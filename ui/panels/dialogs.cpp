@@ -143,7 +143,7 @@ void draw_canvas_question(const app::Session& session, PanelContext& context) {
   const bool cancels = buttons.add(ui, "canvas.cancel", "Cancel", {});
   const bool opens = buttons.add(ui, "canvas.open", "Open", open);
   if (finish_dialog(!cancels && !opens)) return;
-  context.ask("question.answer", {"cancel"});
+  context.ask("question.answer", {opens ? "discard" : "cancel"});
   if (!opens) return;
   app::Arguments words = app::split_line(session.question->then);
   const std::string command = words.front();
