@@ -118,8 +118,13 @@ ExportChoice choice_for(const Session& session, size_t k, ExportChoice choice) {
   return choice;
 }
 
+/// The marks of a face are no part of a body: only pose pictures show them.
 bool are_one_body(const Take& a, const Take& b) {
-  return same(a.target, b.target) && same(a.target_edits, b.target_edits) &&
+  const auto without_face = [](TargetEdits edits) {
+    edits.face.clear();
+    return edits;
+  };
+  return same(a.target, b.target) && same(without_face(a.target_edits), without_face(b.target_edits)) &&
          a.method.offsets == b.method.offsets;
 }
 
