@@ -83,6 +83,13 @@ void draw_reference(const app::Session& session, Ui& ui, ExportState& state, Fil
   for (const std::string& path : paths) labels.push_back(file_name(path));
   labels.push_back("Choose poses\u2026");
   row(ui, "Reference", "2D poses of a picture: the first frame is laid onto the first of them");
+  if (paths.empty()) {
+    ButtonOptions wide;
+    wide.width = -1;
+    if (button(ui, "export.reference", labels.back(), wide))
+      choose_file(session, files, FilePurpose::Reference);
+    return;
+  }
   if (!dropdown(ui, "export.reference", labels, chosen, paths)) return;
   if (static_cast<size_t>(chosen) < paths.size())
     now = paths[static_cast<size_t>(chosen)];
