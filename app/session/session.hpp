@@ -162,7 +162,7 @@ struct Question {
   std::vector<std::string> missing{};  ///< MissingFiles: the missing paths
   std::vector<Autosave> autosaves{};   ///< Recover
   int take =
-      -1;  ///< PaintMisfit: whose weights were painted on another surface; NotAPerson, Canvas: whose target it is
+      -1;  ///< PaintMisfit: whose weights were painted on another surface; the others: whose target it is
 };
 
 /// What the mouse does in the views.

@@ -1,6 +1,7 @@
 // Rows of the export dialog about pose pictures and 2D poses.
 // Marks: export.as, export.camera, export.reference, export.canvas, export.rate, export.count, export.points,
-// export.stick_width, export.hide_limbs, export.hide_face, export.face, export.pose_file, export.depth, .normals, .mask.
+// export.stick_width, export.hide_limbs, export.hide_face, export.face, export.pose_file, export.depth,
+// export.normals, export.mask.
 #pragma once
 
 #include <array>
