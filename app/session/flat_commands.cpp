@@ -3,6 +3,7 @@
 #include <array>
 #include <filesystem>
 
+#include "app/run/exports.hpp"
 #include "app/run/flat_performance.hpp"
 #include "app/session/command_sets.hpp"
 #include "retarget/base/index.hpp"
