@@ -331,6 +331,7 @@ bool export_flat_take(const ExportOptions& options) {
   studio->wait_idle();
   const Session& session = studio->session();
   US_CHECK(session.errors.empty(), session.errors.front().text);
+  US_CHECK(!session.question, session.question->text);
   const KeypointReading poses = exported_poses(session, take, options.poses.count);
   write_flat(options.out, poses, options.poses);
   std::printf("%s %zu frames\n", options.out.c_str(), poses.frames.size());

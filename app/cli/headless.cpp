@@ -19,7 +19,8 @@ void check_questions(const Session& session) {
            session.question->missing[0], ": is a file of the document, but does not exist");
   US_CHECK(!session.question || session.question->kind != Question::Kind::PaintMisfit,
            session.question->text);
-  US_CHECK(!session.question || session.question->kind != Question::Kind::NotAPerson, session.question->text);
+  for (const Question::Kind kind : {Question::Kind::NotAPerson, Question::Kind::Canvas})
+    US_CHECK(!session.question || session.question->kind != kind, session.question->text);
 }
 
 }  // namespace

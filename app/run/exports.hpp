@@ -7,6 +7,7 @@
 
 #include "app/run/pose_choice.hpp"
 #include "retarget/character/character_export.hpp"
+#include "retarget/pose2d/face_marks.hpp"
 
 namespace understudy::app {
 
@@ -66,6 +67,7 @@ struct ExportBody {
   CharacterExportOptions
       file;            ///< of other formats than glTF only in_place, joints, progress; their_rig: own_bones
   PoseChoice poses{};  ///< of pose pictures
+  std::vector<FaceMove> face{};  ///< marks that its user moved
 };
 
 /// One frame of a motion.

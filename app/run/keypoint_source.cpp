@@ -25,12 +25,12 @@ FlatSourceOptions flat_options(const SourceOptions& options) {
   return flat;
 }
 
-/// With points dragged, of a reading in which sides are exchanged, as the options have it.
+/// With points dragged and sides exchanged as the options have it.
 std::vector<CleanPose> clean_poses(const KeypointReading& reading, const SourceOptions& options) {
   KeypointFilterOptions filter;
   filter.smoothing = options.smoothing;
   std::vector<CleanPose> poses = clean_track(reading, reading.performer, filter);
-  drag_points(options.point_edits, poses);
+  edit_track(options.point_edits, poses);
   return poses;
 }
 
@@ -137,9 +137,7 @@ void check_no_picture(const SourceOptions& options) {
 }
 
 std::unique_ptr<Source> open_keypoint_source(const SourceOptions& options) {
-  KeypointReading reading = open_keypoints(flat_options(options));
-  exchange_sides(options.point_edits, reading.tracks[static_cast<size_t>(reading.performer)]);
-  return std::make_unique<KeypointSource>(reading, options);
+  return std::make_unique<KeypointSource>(open_keypoints(flat_options(options)), options);
 }
 
 }  // namespace understudy::app

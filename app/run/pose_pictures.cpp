@@ -412,6 +412,7 @@ BodyMarks marks_of(const ExportBody& body) {
   BodyMarks marks{usual_face_marks(rest), foot_marks(rest)};
   if (weights.rows() == vertices.rows() && weights.cols() == kJointCount)
     marks.face = face_marks(rest, vertices, Eigen::VectorXf(weights.col(Head)));
+  marks.face = moved_marks(marks.face, rest, body.face);
   return marks;
 }
 

@@ -48,7 +48,8 @@ class ComingPictures {
 /// Whether such a path is a folder.
 bool is_picture_folder(const std::string& path);
 
-/// The points of the body's face and feet: on the head's own surface where the target has one.
+/// The points of the body's face and feet: on the head's own surface where the target has one,
+/// or where its user put them.
 BodyMarks marks_of(const ExportBody& body);
 
 }  // namespace understudy::app

@@ -18,6 +18,7 @@
 #include "retarget/editing/scan_edits.hpp"
 #include "retarget/editing/skeleton_edits.hpp"
 #include "retarget/editing/target_edits.hpp"
+#include "retarget/pose2d/face_marks.hpp"
 #include "retarget/rig/rig_edits.hpp"
 
 namespace understudy::app {
@@ -28,12 +29,14 @@ struct TargetEdits {
   /// null: none; shared, so that a copy of a document costs nothing
   std::shared_ptr<const WeightRows> weights;
   std::vector<BoneTurn> rest_pose;  ///< how it stands where the source is in T-pose
+  std::vector<FaceMove> face{};     ///< of pose pictures; one a mark
 };
 template <class V, class S>
 FieldsOf<S, TargetEdits> fields(V& visit, S& edits) {
   visit("joints", edits.joints);
   visit("weights", edits.weights);
   visit("rest_pose", edits.rest_pose);
+  visit("face", edits.face);
 }
 
 /// One target that performs the source, in one way. Two takes of one target compare two methods.

@@ -75,8 +75,9 @@ void answer(Call& c) {
     is_of_study ? save_study(c.studio, path) : save_document(c.studio, path);
   }
   session.question.reset();
-  if (question.kind == Question::Kind::NotAPerson && question.take < ssize(session.takes))
-    c.studio.take_back_target(question.take);
+  const bool is_refused = question.kind == Question::Kind::NotAPerson ||
+                          (question.kind == Question::Kind::Canvas && question.take >= 0 && how == "cancel");
+  if (is_refused && question.take < ssize(session.takes)) c.studio.take_back_target(question.take);
   if (how == "cancel" || (question.kind != Question::Kind::UnsavedChanges && !is_of_study)) return;
   (is_of_study ? session.study.changed : session.changed) = false;
   const Arguments words = split_line(question.then);

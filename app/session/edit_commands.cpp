@@ -274,7 +274,7 @@ void remove_loop(Call& c, PoseEdits& edits) {
 void remove_edit(Call& c) {
   const size_t kind = c.choice(0, "kind",
                                {"skeleton", "drags", "rotation", "rotations", "joint", "drags_of",
-                                "rotations_of", "limb", "people", "fill", "go_on", "loop", "tempo"});
+                                "rotations_of", "limb", "people", "fill", "go_on", "loop", "tempo", "face"});
   if (kind == 12) return remove_tempo_mark(c);
   if (kind == 8) return remove_at(c.document.source.people, c, 1);
   if (kind == 5) return remove_drags_of(c, c.joint(1));
@@ -287,6 +287,7 @@ void remove_edit(Call& c) {
   if (kind == 9) return remove_at(take.pose_edits.fill, c, 2);
   if (kind == 10) return take.pose_edits.go_on.reset();
   if (kind == 11) return remove_loop(c, take.pose_edits);
+  if (kind == 13) return remove_at(take.target_edits.face, c, 2);
   if (kind == 3) return remove_all_at(take.pose_edits.rotate, c.number<int>(2, "frame"));
   remove_at(take.target_edits.joints, c, 2);
 }
@@ -406,7 +407,7 @@ void add_rearrangement(Commands& commands) {
        "skeleton INDEX | drags FRAME | drags_of JOINT | rotation TAKE INDEX | rotations TAKE FRAME | "
        "rotations_of TAKE JOINT | limb TAKE FRAME JOINT | joint TAKE INDEX | people INDEX | fill TAKE INDEX "
        "| "
-       "go_on TAKE | loop TAKE | tempo TAKE INDEX"},
+       "go_on TAKE | loop TAKE | tempo TAKE INDEX | face TAKE INDEX"},
       remove_edit);
   commands.add_edit(
       {"edit.move", "Move an edit in time",
@@ -623,6 +624,16 @@ void paint(Call& c) {
   keep(c, stroke(weights, surface, c.vector(1, "place"), brush));
 }
 
+void move_face_mark(Call& c) {
+  auto& face = c.take().target_edits.face;
+  const FaceMove move{c.choice<FaceMark>(1, "mark", kFaceMarkNames), c.vector(2, "place")};
+  c.label = "Move the " + face_mark_label(move.mark);
+  put(move, face);
+  if (!c.has("mirror", 5)) return;
+  US_CHECK(c.take_state().target, "the target is still being prepared");
+  put(mirrored(move, symmetry_centre(c.take_state().target->joints)), face);
+}
+
 void add_target_edits(Commands& commands) {
   commands.add_edit({"edit.target_joint", "Move a joint of the target", "TAKE JOINT X Y Z [mirror]: metres"},
                     [](Call& c) {
@@ -645,6 +656,11 @@ void add_target_edits(Commands& commands) {
                     [](Call& c) { c.take().target_edits.rest_pose.clear(); });
   commands.add_edit({"edit.target_joints_clear", "Reset the target's joints", "TAKE"},
                     [](Call& c) { c.take().target_edits.joints.clear(); });
+  commands.add_edit({"edit.face_mark", "Move a mark of the face",
+                     "TAKE nose|right_eye|left_eye|right_ear|left_ear X Y Z [mirror]: metres, in the T-pose"},
+                    move_face_mark);
+  commands.add_edit({"edit.face_clear", "Reset the face's marks", "TAKE"},
+                    [](Call& c) { c.take().target_edits.face.clear(); });
   commands.add_slider({"edit.paint", "Paint weights", "TAKE X Y Z: a place on the T-pose's surface"}, paint);
 }
 

@@ -12,6 +12,7 @@
 #include "retarget/base/log.hpp"
 #include "retarget/base/text.hpp"
 #include "retarget/base/worker.hpp"
+#include "retarget/keypoints/keypoint_reader.hpp"
 
 namespace understudy::app {
 namespace {
@@ -366,7 +367,7 @@ void Engine::Impl::open() {
   } catch (const std::exception& error) {
     source.reset();
     ended = true;
-    emit(SourceFailed{error.what()});
+    emit(SourceFailed{error.what(), dynamic_cast<const CanvasUnknownError*>(&error) != nullptr});
   }
 }
 

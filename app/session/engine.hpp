@@ -68,6 +68,7 @@ struct SourceCompleting {
 /// The source cannot be opened, or reading it failed.
 struct SourceFailed {
   std::string sentence;
+  bool wants_canvas = false;  ///< 2D poses of a picture of unknown size
 };
 /// Frames of the source from `first` on, new or redone.
 struct SourceFrames {
@@ -100,6 +101,7 @@ struct TakeFailed {
   std::string sentence;
   bool not_opened = false;    ///< its target's file is to blame
   bool not_a_person = false;  ///< the target could be used all the same
+  bool wants_canvas = false;  ///< as SourceFailed
 };
 /// Frames of a take from `first` on, new or redone.
 struct TakeFrames {

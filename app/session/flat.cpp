@@ -25,8 +25,9 @@ struct FlatJob {
     std::shared_ptr<const FlatResult> result;
     std::string problem;
     bool not_opened = false;  // its file is to blame
+    bool wants_canvas = false;
   };
-  std::string key, raw_key, poses_key;
+  std::string key, raw_key, cleaned_key, poses_key;
   bool has_source = false;
   FlatSourceOptions source;
   FlatSource how;
@@ -39,9 +40,10 @@ struct FlatJob {
 
   std::shared_ptr<const LengthReader> lengths;
   std::shared_ptr<const KeypointReading> raw;
-  std::shared_ptr<const FlatPoses> poses;
-  std::map<std::string, std::shared_ptr<const FlatReference>> references;  // by file and person
+  std::shared_ptr<const FlatPoses> cleaned, poses;                         // before edits, and after
+  std::map<std::string, std::shared_ptr<const FlatReference>> references;  // by reference_key
   std::string problem;                                                     // of the source
+  bool wants_canvas = false;                                               // what that is
   int64_t job = 0;                                                         // the UI thread's own
   bool cancelled = false;
 };
@@ -62,17 +64,22 @@ float mean_confidence(const FlatPose& pose) {
   return seen > 0 ? pose.body.col(2).sum() / static_cast<float>(seen) : 0;
 }
 
-FlatPoses poses_of(const FlatJob& work) {
+/// Without edits.
+FlatPoses cleaned_poses(const FlatJob& work) {
   FlatPoses poses;
   poses.reading = *work.raw;
   KeypointReading& reading = poses.reading;
   reading.performer = performer_of(reading, work.person);
-  exchange_sides(work.source_edits, reading.tracks[static_cast<size_t>(reading.performer)]);
   KeypointFilterOptions filter;
   filter.smoothing = work.smoothing;
   poses.clean = clean_track(reading, reading.performer, filter);
-  drag_points(work.source_edits, poses.clean);
   poses.lengths = proportions_of(reading, *work.lengths);
+  return poses;
+}
+
+FlatPoses edited_poses(const FlatJob& work) {
+  FlatPoses poses = *work.cleaned;
+  edit_track(work.source_edits, poses.clean);
   for (const CleanPose& clean : poses.clean)
     poses.confidence.push_back(clean.is_usable ? mean_confidence(clean.pose) : 0);
   return poses;
@@ -81,13 +88,19 @@ FlatPoses poses_of(const FlatJob& work) {
 void read_source(FlatJob& work) {
   if (!work.has_source) return;
   if (!work.raw) work.raw = std::make_shared<const KeypointReading>(open_keypoints(work.source));
-  if (!work.poses) work.poses = std::make_shared<const FlatPoses>(poses_of(work));
+  if (!work.cleaned) work.cleaned = std::make_shared<const FlatPoses>(cleaned_poses(work));
+  if (!work.poses) work.poses = std::make_shared<const FlatPoses>(edited_poses(work));
+}
+
+std::string reference_key(const FlatJob::Wanted& take) {
+  return key_of(take.path, take.how.person, take.how.canvas);
 }
 
 FlatReference reference_of(const FlatJob::Wanted& take, const LengthReader& lengths) {
   FlatReference reference;
   FlatSourceOptions options;
   options.path = take.path, options.person = take.how.person;
+  if (!take.how.canvas.empty()) options.canvas = parse_canvas(take.how.canvas);
   if (is_proportions_file(take.path)) {
     reference.target = open_flat_target(options, lengths, reference.told);
     return reference;
@@ -131,9 +144,14 @@ void add_figures(const FlatPoses& source, const LengthReader& lengths, FlatResul
 }
 
 void perform(FlatJob& work, FlatJob::Wanted& take) {
-  auto& reference = work.references[take.path + '\n' + take.how.person];
+  auto& reference = work.references[reference_key(take)];
   take.not_opened = !reference;
-  if (!reference) reference = std::make_shared<const FlatReference>(reference_of(take, *work.lengths));
+  try {
+    if (!reference) reference = std::make_shared<const FlatReference>(reference_of(take, *work.lengths));
+  } catch (const CanvasUnknownError&) {
+    take.wants_canvas = true;
+    throw;
+  }
   take.not_opened = false;
   FlatResult result;
   result.reference = reference;
@@ -161,7 +179,12 @@ void make_flat(FlatJob& work, JobControl& control) {
     US_CHECK(work.load_lengths, "there is no network here that reads proportions off 2D poses");
     if (!work.lengths) work.lengths = work.load_lengths();
     control.progress(0.1f);
-    read_source(work);
+    try {
+      read_source(work);
+    } catch (const CanvasUnknownError&) {
+      work.wants_canvas = true;
+      throw;
+    }
   });
   if (!work.problem.empty()) work.poses.reset();
   if (!work.lengths) return;
@@ -189,6 +212,13 @@ SourceFrames source_frames(const FlatPoses& poses) {
   return event;
 }
 
+/// As the document has it, and what the mouse drags now.
+SourceOptions source_with_drag(const Session& session) {
+  SourceOptions source = session.document.source;
+  if (const auto& dragging = session.flat.dragging) add_drag(*dragging, source.point_edits);
+  return source;
+}
+
 bool wants_flat(const Document& document) {
   return document.flat || std::any_of(document.takes.begin(), document.takes.end(),
                                       [](const Take& take) { return take.flat.has_value(); });
@@ -202,10 +232,11 @@ void Studio::follow_flat() {
   const Document& document = session_.document;
   if (!wants_flat(document)) {
     if (session_.flat.poses) ++session_.flat.generation;
-    session_.flat.poses.reset(), b.flat_key.clear(), b.flat_shown.clear();
+    session_.flat.poses.reset(), session_.flat.dragging.reset();
+    b.flat_key.clear(), b.flat_shown.clear();
     return;
   }
-  std::string key = key_of(document.flat, document.source, performs_in_space(document));
+  std::string key = key_of(document.flat, source_with_drag(session_), performs_in_space(document));
   for (size_t k = 0; k < document.takes.size(); ++k)
     if (const Take& take = document.takes[k]; take.flat)
       key += key_of(b.take_ids[k], take.target.path, take.flat);
@@ -231,20 +262,22 @@ void Studio::start_flat(std::string key) {
     work->person = document.source.person;
     work->raw_key =
         key_of(document.source.path, document.source.fps, document.source.canvas, document.source.layout);
-    work->smoothing = document.source.smoothing, work->source_edits = document.source.point_edits;
-    work->poses_key = work->raw_key + key_of(work->person, work->smoothing, work->source_edits);
+    work->smoothing = document.source.smoothing, work->source_edits = source_with_drag(session_).point_edits;
+    work->cleaned_key = work->raw_key + key_of(work->person, work->smoothing);
+    work->poses_key = work->cleaned_key + key_of(work->source_edits);
   }
   for (size_t k = 0; k < document.takes.size(); ++k)
     if (const Take& take = document.takes[k]; take.flat)
-      work->takes.push_back({b.take_ids[k], take.target.path, *take.flat, nullptr, "", false});
+      work->takes.push_back({b.take_ids[k], take.target.path, *take.flat, nullptr, "", false, false});
   work->load_lengths = services_.lengths;
   work->make_engine = services_.flat_engine;
   if (const auto& last = b.flat_work) {
     work->lengths = last->lengths;
     if (last->raw_key == work->raw_key) work->raw = last->raw;
+    if (last->cleaned_key == work->cleaned_key) work->cleaned = last->cleaned;
     if (last->poses_key == work->poses_key) work->poses = last->poses;
     for (const FlatJob::Wanted& take : work->takes)
-      if (const auto known = last->references.find(take.path + '\n' + take.how.person);
+      if (const auto known = last->references.find(reference_key(take));
           known != last->references.end() && known->second)
         work->references.insert(*known);
   }
@@ -266,7 +299,7 @@ void Studio::take_in_flat(FlatJob& work) {
   if (work.cancelled) return;
   if (work.has_source && session_.document.source.path == work.source.path) {
     if (!work.problem.empty()) {
-      SourceFailed failed{work.problem};
+      SourceFailed failed{work.problem, work.wants_canvas};
       return take_in(failed);
     }
     show_flat_source(work);
@@ -275,7 +308,7 @@ void Studio::take_in_flat(FlatJob& work) {
     TakeState* const take = take_of(wanted.id);
     if (take == nullptr) continue;
     if (!wanted.problem.empty()) {
-      TakeFailed failed{wanted.id, wanted.problem, wanted.not_opened, false};
+      TakeFailed failed{wanted.id, wanted.problem, wanted.not_opened, false, wanted.wants_canvas};
       take_in(failed);
       continue;
     }

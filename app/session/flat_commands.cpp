@@ -3,6 +3,7 @@
 #include <array>
 #include <filesystem>
 
+#include "app/run/exports.hpp"
 #include "app/run/flat_performance.hpp"
 #include "app/session/command_sets.hpp"
 #include "retarget/base/index.hpp"
@@ -182,6 +183,14 @@ void add_proportions(Commands& commands) {
   commands.add({"flat.save_proportions", "Save proportions", "TAKE PATH"}, save_lengths);
 }
 
+/// "" for auto. Throws Error for what is no canvas.
+std::string canvas_argument(const Call& c, size_t i) {
+  const std::string& text = c.word(i, "canvas");
+  if (text == "auto") return "";
+  parse_canvas(text);
+  return text;
+}
+
 void add_manner(Commands& commands) {
   commands.add_edit({"flat.place", "Placement", "TAKE reference|source: where the result stands"},
                     [](Call& c) { set_flat(flat_of(c), "place", ArgumentReader({c.word(1, "place")})); });
@@ -199,11 +208,10 @@ void add_manner(Commands& commands) {
   commands.add_slider({"flat.smoothing", "Smoothing of 2D poses", "FACTOR: 0 to 4, 1 as tuned"}, [](Call& c) {
     poses_of(c).smoothing = c.clamped(0, "factor", kFlatSmoothing.low, kFlatSmoothing.high);
   });
-  commands.add_edit({"flat.canvas", "Canvas of 2D poses", "WIDTHxHEIGHT|auto"}, [](Call& c) {
-    const std::string& text = c.word(0, "canvas");
-    if (text != "auto") parse_canvas(text);
-    poses_of(c).canvas = text == "auto" ? "" : text;
-  });
+  commands.add_edit({"flat.canvas", "Canvas of 2D poses", "WIDTHxHEIGHT|auto"},
+                    [](Call& c) { poses_of(c).canvas = canvas_argument(c, 0); });
+  commands.add_edit({"flat.target_canvas", "Canvas of the target's 2D poses", "TAKE WIDTHxHEIGHT|auto"},
+                    [](Call& c) { flat_of(c).canvas = canvas_argument(c, 1); });
 }
 
 int point_of(const Call& c, size_t i) {
@@ -219,9 +227,7 @@ std::string words_of(std::string name) {
   return name;
 }
 
-/// A drag that goes on takes the place of the one before.
-void drag_point(Call& c) {
-  auto& edits = poses_of(c).point_edits;
+PointDrag drag_of(const Call& c) {
   const auto& poses = c.session.flat.poses;
   US_CHECK(poses, "the source is still being read");
   PointDrag drag;
@@ -232,17 +238,28 @@ void drag_point(Call& c) {
   drag.point = point_of(c, 1);
   drag.x = c.number(2, "x"), drag.y = c.number(3, "y");
   drag.falloff = c.arguments.size() > 4 ? c.clamped(4, "falloff", 0, 1000) : c.session.falloff;
+  return drag;
+}
+
+void drag_point(Call& c) {
+  auto& edits = poses_of(c).point_edits;
+  const PointDrag drag = drag_of(c);
   c.label = std::string("Drag ") + words_of(kBodyPointNames[static_cast<size_t>(drag.point)]);
-  if (!edits.empty())
-    if (const auto* const last = std::get_if<PointDrag>(&edits.back()))
-      if (last->frame == drag.frame && last->point == drag.point) edits.pop_back();
-  edits.emplace_back(drag);
+  add_drag(drag, edits);
+  c.session.flat.dragging.reset();
 }
 
 void add_by_hand(Commands& commands) {
   commands.add_slider(
       {"flat.drag", "Drag a point", "FRAME POINT X Y [FALLOFF]: to a place of the canvas, pixels"},
       drag_point);
+  commands.add({"flat.dragging", "While a point is dragged", "as flat.drag, or none: shown, but no edit yet"},
+               [](Call& c) {
+                 poses_of(c);
+                 auto& dragging = c.session.flat.dragging;
+                 dragging.reset();
+                 if (c.word(0, "frame") != "none") dragging = drag_of(c);
+               });
   commands.add_edit({"flat.exchange", "Exchange left and right", "FIRST LAST [arms|legs|both]: frames"},
                     exchange_flat_sides);
   commands.add_edit({"flat.edit_remove", "Remove an edit of 2D poses", "NUMBER: from 0"}, [](Call& c) {

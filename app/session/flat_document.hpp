@@ -41,6 +41,7 @@ struct FlatTake {
   bool touches = true;                ///< hands that touch keep touching
   bool growth = true;                 ///< who comes nearer grows
   std::string person;                 ///< who of the target's file, a number; empty: who is seen longest
+  std::string canvas;                 ///< of the target's picture, "1280x720"; empty: as its file tells
   std::vector<ChosenLength> lengths;  ///< over those that are read off the picture; one a bone
 };
 template <class V, class S>
@@ -50,6 +51,7 @@ FieldsOf<S, FlatTake> fields(V& visit, S& flat) {
   visit("touches", flat.touches);
   visit("growth", flat.growth);
   visit("person", flat.person);
+  visit("canvas", flat.canvas);
   visit("lengths", flat.lengths);
 }
 

@@ -11,6 +11,7 @@
 #include "retarget/character/picture.hpp"
 #include "retarget/keypoints/keypoint_filter.hpp"
 #include "retarget/keypoints/proportions.hpp"
+#include "retarget/keypoints/track_edits.hpp"
 #include "retarget/pose2d/flat_retargeter.hpp"
 
 namespace understudy::app {
@@ -42,6 +43,7 @@ struct FlatResult {
 
 struct FlatState {
   std::shared_ptr<const FlatPoses> poses;  ///< null: none yet, or the source is none
+  std::optional<PointDrag> dragging;       ///< as the mouse holds it: performed as if it were an edit
   int64_t generation = 0;                  ///< changes with any of it
 };
 

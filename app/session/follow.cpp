@@ -68,4 +68,14 @@ Vec3 follow_offset(const Session& session, int pane, int frame) {
   return total > 0 ? Vec3(sum.x() / total, 0, sum.z() / total) : Vec3::Zero();
 }
 
+Vec3 rest_offset(const Session& session, int pane, int frame) {
+  const Target& target = *session.takes[static_cast<size_t>(pane) - 1].target;
+  const Points& vertices = target.mesh.vertices;
+  Vec3 offset(target.joints(Pelvis, 0), vertices.rows() > 0 ? vertices.col(1).minCoeff() : 0,
+              target.joints(Pelvis, 2));
+  const Joints* const now = pane_joints(session, pane, frame);
+  if (!session.view.follow && now != nullptr) offset -= Vec3((*now)(Pelvis, 0), 0, (*now)(Pelvis, 2));
+  return offset;
+}
+
 }  // namespace understudy::app

@@ -13,6 +13,10 @@ namespace understudy::app {
 /// source, k the take k - 1. Depends on the frame alone.
 Vec3 follow_offset(const Session& session, int pane, int frame);
 
+/// What is added to the target of a camera instead while the pane of a take, whose target is ready, shows
+/// the T-pose: that is seen where the person would be. frame: the pane's.
+Vec3 rest_offset(const Session& session, int pane, int frame);
+
 /// How far a person stands from its place while the people of an overlay stand side by side, metres; zero in
 /// other layouts. pane: 0 the source, k the take k - 1.
 Vec3 spread_offset(const Session& session, int pane);

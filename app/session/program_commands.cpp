@@ -3,6 +3,7 @@
 
 #include "app/session/command_sets.hpp"
 #include "app/session/follow.hpp"
+#include "retarget/base/index.hpp"
 
 namespace understudy::app {
 namespace {
@@ -30,27 +31,52 @@ void see_crop_box(Call& c) {
       std::max(camera.distance, distance_to_see(camera, aspect, box.low - offset, box.high - offset));
 }
 
+/// The head from the front, as large as it is with some room about it.
+void see_head(Call& c) {
+  Session& session = c.session;
+  const TakeState* const take = at_or_null(session.takes, session.selected_take);
+  if (take == nullptr || !take->target) return;
+  View& view = session.view;
+  if (!view.linked) choose_take(session, session.selected_take);
+  const auto i = static_cast<size_t>(view.linked ? 0 : view.active_pane);
+  if (view.cameras.size() <= i) view.cameras.resize(i + 1, active_camera(view));
+  const FaceMarks& face = take->face;
+  const Vec3 middle = 0.5f * (face.left_ear + face.right_ear);
+  const float reach = 1.6f * std::max((face.nose - middle).norm(), (face.left_ear - middle).norm());
+  const int pane = session.selected_take + 1;
+  CameraState& camera = view.cameras[i];
+  camera.yaw = camera.pitch = 0;
+  camera.target = take->target->joints.row(Head).transpose() + middle -
+                  rest_offset(session, pane, std::max(0, shown_frame(session)));
+  const Vec3 room = Vec3::Constant(reach);
+  camera.distance = distance_to_see(camera, aspect_of_a_view(view, session.takes.size()),
+                                    camera.target - room, camera.target + room);
+}
+
 /// What a tool needs to see it sees; when it is left the cameras are as before,
-/// unless they were moved meanwhile.
-void adjust_cameras(Call& c) {
+/// unless they were moved meanwhile; from the head they always come back.
+void adjust_cameras(Call& c, Tool left) {
   Session& session = c.session;
   auto& cameras = session.view.cameras;
   const auto stepped = std::exchange(session.stepped_back, std::nullopt);
-  if (stepped && same(cameras, stepped->after)) cameras = stepped->before;
+  if (stepped && (left == Tool::Face || same(cameras, stepped->after))) cameras = stepped->before;
   const std::vector<CameraState> before = cameras;
-  if (is_of_rest(session.tool)) see_rest(c);
+  if (session.tool == Tool::Face)
+    see_head(c);
+  else if (is_of_rest(session.tool))
+    see_rest(c);
   if (session.tool == Tool::Crop) see_crop_box(c);
   if (!same(cameras, before)) session.stepped_back = {before, cameras};
 }
 
 void add_tools(Commands& commands) {
-  constexpr Names<kToolNames.size()> kKeys{"Q", "W", "E", "R", "P", "C", ""};
+  constexpr Names<kToolNames.size()> kKeys{"Q", "W", "E", "R", "P", "C", "", ""};
   for (size_t i = 0; i < kToolNames.size(); ++i)
     commands.add({std::string("tool.") + kToolNames[i], kToolLabels[i], "", kKeys[i]},
                  [name = kToolNames[i]](Call& c) { c.studio.run("tool", {name}); });
-  commands.add({"tool", "Tool", "look|joints|bones|target-joints|paint|crop|rest-pose"}, [](Call& c) {
+  commands.add({"tool", "Tool", "look|joints|bones|target-joints|paint|crop|rest-pose|face"}, [](Call& c) {
     const Tool before = std::exchange(c.session.tool, c.choice<Tool>(0, "tool", kToolNames));
-    if (before != c.session.tool) adjust_cameras(c);
+    if (before != c.session.tool) adjust_cameras(c, before);
   });
   commands.add({"tool.falloff", "Falloff", "FRAMES"},
                [](Call& c) { c.session.falloff = c.clamped(0, "falloff", 0, 10000); });

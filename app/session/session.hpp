@@ -91,6 +91,7 @@ struct TakeState {
   std::shared_ptr<const SafeBinding> binding;
   std::shared_ptr<const RowMatrix> weights;  ///< [V, 22], edited
   std::shared_ptr<const Deformer> deformer;  ///< bound to the target, with those weights
+  FaceMarks face;                            ///< found on the head's surface by those weights
   SharedFrames<KeptFrame> performed;         ///< the engine's frames
   std::string rights;                        ///< what files made of them have to say; empty: nothing
   SharedFrames<KeptSource> another;          ///< who is performed, where that is not the source's person
@@ -153,25 +154,28 @@ struct Failure {
 
 /// A question that the user must answer before the studio continues.
 struct Question {
-  enum class Kind { UnsavedChanges, Recover, MissingFiles, PaintMisfit, NotAPerson, UnsavedStudy };
+  enum class Kind { UnsavedChanges, Recover, MissingFiles, PaintMisfit, NotAPerson, UnsavedStudy, Canvas };
   Kind kind = Kind::UnsavedChanges;
   std::string text{};
-  std::string then{};                  ///< the command to continue with ("app.quit", "document.open PATH")
+  std::string then{};  ///< the command to continue with ("app.quit", "document.open PATH"); Canvas: its
+                       ///< last argument, WIDTHxHEIGHT, is the answer
   std::vector<std::string> missing{};  ///< MissingFiles: the missing paths
   std::vector<Autosave> autosaves{};   ///< Recover
   int take =
-      -1;  ///< PaintMisfit: whose weights were painted on another surface; NotAPerson: whose target it is
+      -1;  ///< PaintMisfit: whose weights were painted on another surface; the others: whose target it is
 };
 
 /// What the mouse does in the views.
-enum class Tool { Look, Joints, Bones, TargetJoints, Paint, Crop, RestPose };
-constexpr Names<7> kToolNames{"look", "joints", "bones", "target-joints", "paint", "crop", "rest-pose"};
-constexpr Names<7> kToolLabels{
-    "Look around",        "Drag extracted joints", "Pose bones",    "Place the target's joints",
-    "Paint skin weights", "Crop the scan",         "Edit rest pose"};  ///< on the screen
+enum class Tool { Look, Joints, Bones, TargetJoints, Paint, Crop, RestPose, Face };
+constexpr Names<8> kToolNames{"look",  "joints", "bones",     "target-joints",
+                              "paint", "crop",   "rest-pose", "face"};
+constexpr Names<8> kToolLabels{"Look around",        "Drag extracted joints",
+                               "Pose bones",         "Place the target's joints",
+                               "Paint skin weights", "Crop the scan",
+                               "Edit rest pose",     "Place the face's marks"};  ///< on the screen
 /// Whether a tool works on the target before it performs, which is then seen instead of a frame.
 constexpr bool is_of_rest(Tool tool) {
-  return tool == Tool::TargetJoints || tool == Tool::RestPose;
+  return tool == Tool::TargetJoints || tool == Tool::RestPose || tool == Tool::Face;
 }
 
 struct Session {

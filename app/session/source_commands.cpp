@@ -34,20 +34,27 @@ void check_file(const std::string& path) {
 }
 
 void add_opening(Commands& commands) {
-  commands.add_edit(
-      {"source.open", "Open source",
-       "PATH: scans (folder, list, array), 2D poses, or a skeletal motion (" + format_names(kMotion) + ")"},
-      [](Call& c) {
-        SourceOptions source;
-        source.path = c.path(0);
-        if (looks_like_keypoints(source.path)) return set_flat_source(c, source.path);
-        opened({&c.session.settings.recent_sources}, source.path, [&] {
-          US_CHECK(!is_smpl_body(source.path), source.path,
-                   ": is a body; choose the motion that it performs as well");
-          if (!is_motion_file(source.path)) ScanSource{source.path};  // throws at once when there is no frame
-        });
-        set_source(c, source);
-      });
+  commands.add_edit({"source.open", "Open source",
+                     "PATH: scans (folder, list, array), 2D poses, or a skeletal motion (" +
+                         format_names(kMotion) + ") | PATH WIDTHxHEIGHT: 2D poses in a picture of that size"},
+                    [](Call& c) {
+                      SourceOptions source;
+                      source.path = c.path(0);
+                      if (looks_like_keypoints(source.path)) {
+                        const std::string canvas = c.arguments.size() > 1 ? c.word(1, "canvas") : "";
+                        if (!canvas.empty()) parse_canvas(canvas);
+                        set_flat_source(c, source.path);
+                        c.document.source.canvas = canvas;
+                        return;
+                      }
+                      opened({&c.session.settings.recent_sources}, source.path, [&] {
+                        US_CHECK(!is_smpl_body(source.path), source.path,
+                                 ": is a body; choose the motion that it performs as well");
+                        if (!is_motion_file(source.path))
+                          ScanSource{source.path};  // throws at once when there is no frame
+                      });
+                      set_source(c, source);
+                    });
   commands.add_edit(
       {"source.motion", "Open body and motion", "BODY MOTION: SMPL-format body, AMASS-format motion"},
       [](Call& c) {

@@ -7,6 +7,7 @@
 #include <thread>
 
 #include "app/run/keypoint_source.hpp"
+#include "app/run/pose_pictures.hpp"
 #include "app/session/background.hpp"
 #include "app/session/command_sets.hpp"
 #include "app/session/taught_styles.hpp"
@@ -115,13 +116,16 @@ void Studio::run(const std::string& name, const Arguments& arguments) {
   const std::vector<int64_t> ids_before = background_->take_ids;
   const bool changed_before = session_.changed;
   const bool merges = command->undo == Command::Undo::Merged;
-  const std::string merge = merges ? name + (arguments.empty() ? "" : " " + arguments[0]) : "";
   const auto label = [&] { return call.label.empty() ? command->label : call.label; };
+  // Of one thing: the label tells bones and points from each other.
+  const auto merge = [&] {
+    return merges ? name + (arguments.empty() ? "" : " " + arguments[0]) + '\n' + label() : "";
+  };
   try {
     command->run(call);
     mend(session_, name);
     if (study_before && session_.study.study && !same(*study_before, *session_.study.study))
-      keep_study_step(*study_before, label(), merge);
+      keep_study_step(*study_before, label(), merge());
     if (same(before, session_.document)) return;
     follow_document();
   } catch (...) {
@@ -129,7 +133,7 @@ void Studio::run(const std::string& name, const Arguments& arguments) {
     session_.study.study = study_before;
     throw;
   }
-  session_.history.add(before, label(), merge);
+  session_.history.add(before, label(), merge());
   session_.study.history.forget_redo();
   session_.changed = true;
   note_openings(before, ids_before, changed_before);
@@ -320,6 +324,9 @@ void Studio::apply_weights(size_t k) {
       state.paint_problem = session_.document.takes[k].name + ": " + error.what();
     }
   state.weights = std::shared_ptr<const RowMatrix>(state.deformer, &state.deformer->weights());
+  ExportBody body{state.character, state.deformer, {}};
+  body.file.joints = state.target->joints;
+  state.face = marks_of(body).face;
   applied.weights = weights_wanted;
   ++state.generation;
 }

@@ -108,6 +108,7 @@ class Studio {
 
  private:
   struct Background;
+  void ask_for_canvas(const std::string& path, const std::string& then, int take = -1);
   void keep_study_step(const Study& before, const std::string& label, const std::string& merge);
   void ask_about_autosaves();
   void load_weights_name();

@@ -8,6 +8,7 @@
 #include "retarget/base/error.hpp"
 #include "retarget/base/index.hpp"
 #include "retarget/base/log.hpp"
+#include "retarget/base/text.hpp"
 
 namespace understudy::app {
 namespace {
@@ -159,13 +160,29 @@ void Studio::take_in(SourceFailed& event) {
   session_.source.problem = event.sentence;
   session_.source.completing = -1;
   if (asked_for(session_, event.sentence)) return log::warn(event.sentence);
+  const bool is_asked = session_.question && session_.question->kind == Question::Kind::Canvas;
+  if (event.wants_canvas && is_asked) return;  // both who lifts it and who performs it flat have tried
   const SourceOptions failed = session_.document.source;
   const bool is_new = background_->opened_source.has_value();
   roll_back_source();
+  if (event.wants_canvas)
+    return ask_for_canvas(failed.path, is_new ? join_line("source.open", {failed.path}) : "flat.canvas");
   auto& recent = session_.settings.recent_sources;
   fail(event.sentence +
            (is_new && !failed.blend ? taken_off({&recent}, recent_source(failed.path, failed.motion)) : ""),
        "source.open");
+}
+
+/// One after the other: what waits fails again, and asks, when this one is answered.
+void Studio::ask_for_canvas(const std::string& path, const std::string& then, int take) {
+  if (session_.question) return;
+  session_.question = Question{
+      Question::Kind::Canvas,
+      file_name(path) + " has its points as shares of a picture, and does not say how large that is.",
+      then,
+      {},
+      {},
+      take};
 }
 
 /// The skeleton shown is the first take's: repaired and smoothed as it was transferred.
@@ -288,6 +305,8 @@ void Studio::take_in(TakeFailed& event) {
   }
   const size_t k = take - session_.takes.data();
   const std::string path = session_.document.takes[k].target.path;
+  if (event.wants_canvas)
+    return ask_for_canvas(path, "flat.target_canvas " + std::to_string(k), static_cast<int>(k));
   const bool gone = event.not_opened && take_back_target(k);
   fail(event.sentence + (gone ? taken_off({&session_.settings.recent_targets}, path) : ""), "target.add");
 }

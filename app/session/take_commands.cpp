@@ -34,7 +34,7 @@ void check_fits(const Document& document) {
 bool is_edited(const Take& take) {
   return (take.flat && !take.flat->lengths.empty()) || !take.pose_edits.empty() ||
          !take.target_edits.joints.empty() || take.target_edits.weights ||
-         !take.target_edits.rest_pose.empty();
+         !take.target_edits.rest_pose.empty() || !take.target_edits.face.empty();
 }
 
 /// Says which take went, and offers it back.

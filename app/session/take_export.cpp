@@ -118,8 +118,13 @@ ExportChoice choice_for(const Session& session, size_t k, ExportChoice choice) {
   return choice;
 }
 
+/// The marks of a face are no part of a body: only pose pictures show them.
 bool are_one_body(const Take& a, const Take& b) {
-  return same(a.target, b.target) && same(a.target_edits, b.target_edits) &&
+  const auto without_face = [](TargetEdits edits) {
+    edits.face.clear();
+    return edits;
+  };
+  return same(a.target, b.target) && same(without_face(a.target_edits), without_face(b.target_edits)) &&
          a.method.offsets == b.method.offsets;
 }
 
@@ -152,7 +157,7 @@ ExportInput input_of(const Session& session, const std::vector<size_t>& takes, c
     add_clip(out, session, k, takes.size() > 1 ? name : clip_name(session, take));
     rights.push_back(session.takes[k].rights);
   }
-  out.body = {state.character, state.deformer, choice.file, choice.poses};
+  out.body = {state.character, state.deformer, choice.file, choice.poses, take.target_edits.face};
   if (choice.pane_camera) out.body.poses.camera = camera_of_view(session, takes[0]);
   out.body.file.rights = joined_once(rights, "; ");
   const bool own = on_their_rig(take.target, *state.character);

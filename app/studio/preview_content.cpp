@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "app/run/flat_performance.hpp"
 #include "app/run/source.hpp"
 #include "app/run/target_file.hpp"
 #include "app/session/document_file.hpp"
@@ -151,6 +152,22 @@ std::string study_in_words(const std::string& path) {
   return study.name + ": " + (problem.empty() ? words : problem);
 }
 
+/// Words alone.
+PreviewContent of_poses(const std::string& path) {
+  FlatSourceOptions options;
+  options.path = path;
+  const KeypointReading reading = open_keypoints(options);
+  const auto counted = [](size_t count, const char* one, const char* many) {
+    return grouped(static_cast<int64_t>(count)) + " " + (count == 1 ? one : many);
+  };
+  PreviewContent content;
+  content.text = reading.format + ", " + reading.layout + ", " +
+                 counted(reading.frames.size(), "frame", "frames") + ", " +
+                 counted(reading.tracks.size(), "person", "people");
+  if (!reading.canvas_is_guessed) content.text += ", " + canvas_text(reading.canvas);
+  return content;
+}
+
 PreviewContent of_folder(const std::string& path, const std::string& up) {
   try {
     return of_source(fs::exists(fs::path(path) / "case.json") ? path + "/source" : path, up);
@@ -176,7 +193,10 @@ PreviewContent preview_content(const std::string& path, const std::string& up) {
   try {
     if (can_be(path, kDocument)) return of_document(path);
     if (can_be(path, kStudy)) return {{}, std::nullopt, study_in_words(path)};
+    if (looks_like_keypoints(path)) return of_poses(path);
     return fs::is_directory(path) ? of_folder(path, up) : of_file(path);
+  } catch (const CanvasUnknownError&) {
+    return {{}, std::nullopt, "2D poses that do not say how large their picture is; you will be asked."};
   } catch (const std::exception& error) {
     return {{}, std::nullopt, error.what()};  // shown beside the file: it is only looked at
   }

@@ -37,6 +37,7 @@ KeypointReading FrameDecoder::finish() {
   if (tracks_.empty()) {
     const auto bad =
         std::find_if(frames_.begin(), frames_.end(), [](const auto& f) { return !f.problem.empty(); });
+    if (wants_canvas_) throw CanvasUnknownError(bad->problem);
     throw Error(bad != frames_.end() ? bad->problem
                                      : source_ + ": there is nobody in any of its " +
                                            counted(static_cast<int64_t>(frames_.size()), "frame"));

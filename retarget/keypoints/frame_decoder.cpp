@@ -116,7 +116,7 @@ bool FrameDecoder::is_place(const float* row, Scale scale) const {
   return row[0] != 0 || row[1] != 0 || (scale == Scale::Signed && row[2] > 0);
 }
 
-FrameDecoder::Decisions FrameDecoder::decide(const RawFrame& frame, int64_t number) const {
+FrameDecoder::Decisions FrameDecoder::decide(const RawFrame& frame, int64_t number) {
   Decisions decided;
   const auto first = std::find_if(frame.people.begin(), frame.people.end(),
                                   [](const RawPerson& person) { return person.points.rows() > 0; });
@@ -130,8 +130,9 @@ FrameDecoder::Decisions FrameDecoder::decide(const RawFrame& frame, int64_t numb
   decided.all_are_seen = !any_seen && !decided.is_logit;
   decided.scale = scale_of(frame, decided.all_are_seen || decided.is_logit);
   decided.canvas = canvas_for(frame, decided.canvas_from);
-  US_CHECK(decided.scale == Scale::Pixels || decided.canvas.is_known(), frame_of(source_, number),
-           ": places are in ", decided.scale == Scale::Signed ? "-1..1" : "0..1",
+  wants_canvas_ = decided.scale != Scale::Pixels && !decided.canvas.is_known();
+  US_CHECK(!wants_canvas_, frame_of(source_, number), ": places are in ",
+           decided.scale == Scale::Signed ? "-1..1" : "0..1",
            " of a canvas of unknown size; say its width and height (--canvas 1280x720)");
   return decided;
 }

@@ -54,7 +54,7 @@ class FrameDecoder : public RawSink {
   };
 
   std::vector<PersonSighting> decode(const RawFrame& frame, int64_t number);
-  Decisions decide(const RawFrame& frame, int64_t number) const;
+  Decisions decide(const RawFrame& frame, int64_t number);
   KeypointLayout layout_for(const RawPerson& person, int64_t number) const;
   Scale scale_of(const RawFrame& frame, bool all_are_seen) const;
   Canvas canvas_for(const RawFrame& frame, std::string& from) const;
@@ -78,6 +78,7 @@ class FrameDecoder : public RawSink {
   bool has_begun_ = false;
   double fps_ = 30;
   std::optional<Decisions> decided_;
+  bool wants_canvas_ = false;  // could not be decided without
   PeopleTracker tracker_;
   std::vector<KeypointFrame> frames_;
   std::vector<KeypointTrack> tracks_;

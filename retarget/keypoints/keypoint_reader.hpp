@@ -5,9 +5,15 @@
 #include <optional>
 #include <string>
 
+#include "retarget/base/error.hpp"
 #include "retarget/keypoints/keypoint_track.hpp"
 
 namespace understudy {
+
+/// Places in 0..1 or -1..1 of a picture whose size nothing tells: only who made them knows it.
+struct CanvasUnknownError : Error {
+  using Error::Error;
+};
 
 /// What forces a decision; otherwise the file decides, and the reading tells.
 struct KeypointReaderOptions {
@@ -33,7 +39,7 @@ struct KeypointReaderOptions {
 /// where none is told and the rate are no poses.) A frame that cannot be read or is of another layout or
 /// scale stays, with the problem; so do up to a thousand frames that are missing in one place. Throws
 /// Error, one sentence naming the file, when nothing in it can be used: no pose file, broken, nobody in any
-/// frame, an unknown layout, 0..1 without a canvas.
+/// frame, an unknown layout, 0..1 without a canvas (CanvasUnknownError).
 KeypointReading read_keypoints(const std::string& path, const KeypointReaderOptions& options = {});
 /// The same of a JSON's text; `source` names it in messages.
 KeypointReading parse_keypoints(const std::string& json, const std::string& source,

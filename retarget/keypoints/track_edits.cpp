@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <utility>
 
 #include "retarget/keypoints/exchanged_sides.hpp"
 
@@ -30,6 +31,16 @@ void exchange(const SidesExchange& edit, FlatPose& pose) {
   if (edit.limbs == SidesExchange::Limbs::Legs) return;
   pose.left_hand = other.left_hand;
   pose.right_hand = other.right_hand;
+}
+
+/// Nothing is flagged there any more: the user has looked.
+void exchange(const SidesExchange& edit, std::vector<CleanPose>& clean) {
+  const auto end = std::min<int64_t>(static_cast<int64_t>(clean.size()), int64_t{edit.last} + 1);
+  for (int64_t t = std::max(0, edit.first); t < end; ++t) {
+    CleanPose& one = clean[static_cast<size_t>(t)];
+    exchange(edit, one.pose);
+    if (std::exchange(one.sides_mended, false)) one.problem.clear();
+  }
 }
 
 void move_points(const Vec2& way, FlatPoints& points) {
@@ -66,19 +77,18 @@ void drag(const PointDrag& edit, std::vector<CleanPose>& clean) {
 
 }  // namespace
 
-void exchange_sides(const std::vector<TrackEdit>& edits, KeypointTrack& track) {
-  for (const TrackEdit& edit : edits) {
-    const auto* const exchanged = std::get_if<SidesExchange>(&edit);
-    if (exchanged == nullptr) continue;
-    for (TrackedPose& tracked : track.poses)
-      if (tracked.frame >= exchanged->first && tracked.frame <= exchanged->last)
-        exchange(*exchanged, tracked.pose);
-  }
+void add_drag(const PointDrag& drag, std::vector<TrackEdit>& edits) {
+  if (!edits.empty())
+    if (const auto* const last = std::get_if<PointDrag>(&edits.back()))
+      if (last->frame == drag.frame && last->point == drag.point) edits.pop_back();
+  edits.emplace_back(drag);
 }
 
-void drag_points(const std::vector<TrackEdit>& edits, std::vector<CleanPose>& clean) {
-  for (const TrackEdit& edit : edits)
+void edit_track(const std::vector<TrackEdit>& edits, std::vector<CleanPose>& clean) {
+  for (const TrackEdit& edit : edits) {
+    if (const auto* const exchanged = std::get_if<SidesExchange>(&edit)) exchange(*exchanged, clean);
     if (const auto* const dragged = std::get_if<PointDrag>(&edit)) drag(*dragged, clean);
+  }
 }
 
 }  // namespace understudy

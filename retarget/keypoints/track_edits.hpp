@@ -25,7 +25,7 @@ FieldsOf<S, PointDrag> fields(V& visit, S& drag) {
   visit("falloff", drag.falloff, kFrameNumbers);
 }
 
-/// Left and right were taken for each other from frame `first` to frame `last`, both inside.
+/// Left and right are taken for each other from frame `first` to frame `last`, both inside.
 struct SidesExchange {
   enum class Limbs { Arms, Legs, Both };
   int first = 0, last = 0;
@@ -41,12 +41,14 @@ FieldsOf<S, SidesExchange> fields(V& visit, S& exchange) {
 
 using TrackEdit = std::variant<PointDrag, SidesExchange>;
 
-/// Exchanges sides in the track as it was read: what cleans it up later must not see them wrong. Both: eyes
-/// and ears, too.
-void exchange_sides(const std::vector<TrackEdit>& edits, KeypointTrack& track);
-/// Puts points of the cleaned track where the user wants them, in the order of the edits; they are then
-/// certain. With a wrist goes its hand, with the nose the face. A point that is missing is there in its own
-/// frame alone; in a frame before anybody was seen, and beyond the track, nothing happens.
-void drag_points(const std::vector<TrackEdit>& edits, std::vector<CleanPose>& clean);
+/// Adds a drag; one that goes on takes the place of the one before.
+void add_drag(const PointDrag& drag, std::vector<TrackEdit>& edits);
+
+/// Edits the cleaned track, which is what the user sees, one edit after the other; so no clean-up takes back
+/// what they decided. Exchanged sides are those that were seen, whether they had been put back or not, of
+/// both limbs eyes and ears, too. A point that is dragged is certain; with a wrist goes its hand, with the
+/// nose the face. One that is missing is there in its own frame alone; in a frame before anybody was seen,
+/// and beyond the track, nothing happens.
+void edit_track(const std::vector<TrackEdit>& edits, std::vector<CleanPose>& clean);
 
 }  // namespace understudy

@@ -1,5 +1,6 @@
 #include "retarget/pose2d/body_view.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace understudy {
@@ -109,12 +110,17 @@ FlatPose seen_pose(const BodyPlaces& places, const Mat3& head, const Pinhole& ca
     if (seen.allFinite() && is_before && is_on(options.canvas, seen)) pose.set(point, seen.head<2>(), 1);
   }
   if (!options.hides_face) return pose;
-  for (const FaceSight& sight : kFaceSights) {
-    const Vec3 towards = head * sight.towards.normalized();
-    const Vec3 place = places.row(sight.point).transpose();
-    if (towards.dot(to_camera(camera, place)) < sight.least) pose.forget(sight.point);
-  }
+  for (const FaceSight& sight : kFaceSights)
+    if (is_turned_away(sight.point, places.row(sight.point).transpose(), head, camera))
+      pose.forget(sight.point);
   return pose;
+}
+
+bool is_turned_away(int point, const Vec3& place, const Mat3& head, const Pinhole& camera) {
+  return std::any_of(kFaceSights.begin(), kFaceSights.end(), [&](const FaceSight& sight) {
+    const Vec3 towards = head * sight.towards.normalized();
+    return sight.point == point && towards.dot(to_camera(camera, place)) < sight.least;
+  });
 }
 
 void forget_hidden(FlatPose& pose, const BodyPlaces& places, const Pinhole& camera, const SeenSkin& skin) {

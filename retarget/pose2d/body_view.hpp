@@ -36,6 +36,8 @@ struct BodyViewOptions {
   bool hides_face = true;  ///< nose, eyes and ears vanish when the head turns them away from the camera
 };
 
+/// Whether nose, eye or ear at a place in the world vanishes for a camera, by where the head looks.
+bool is_turned_away(int point, const Vec3& place, const Mat3& head, const Pinhole& camera);
 /// What is seen is of confidence 1. What is behind the eye is missing.
 FlatPose seen_pose(const BodyPlaces& places, const Mat3& head, const Pinhole& camera,
                    const BodyViewOptions& options = {});

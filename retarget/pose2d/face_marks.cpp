@@ -1,6 +1,7 @@
 #include "retarget/pose2d/face_marks.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <vector>
 
@@ -90,6 +91,52 @@ FaceMarks face_marks(const Joints& rest, const Points& vertices,
   marks.right_eye = eye_at(head, box, -1), marks.left_eye = eye_at(head, box, 1);
   marks.right_ear = ear_at(head, box, -1), marks.left_ear = ear_at(head, box, 1);
   return marks;
+}
+
+std::string face_mark_label(FaceMark mark) {
+  std::string label = kFaceMarkNames[static_cast<size_t>(mark)];
+  std::replace(label.begin(), label.end(), '_', ' ');
+  return label;
+}
+
+Vec3& place_of(FaceMark mark, FaceMarks& marks) {
+  switch (mark) {
+    case FaceMark::RightEye:
+      return marks.right_eye;
+    case FaceMark::LeftEye:
+      return marks.left_eye;
+    case FaceMark::RightEar:
+      return marks.right_ear;
+    case FaceMark::LeftEar:
+      return marks.left_ear;
+    case FaceMark::Nose:
+      break;
+  }
+  return marks.nose;
+}
+
+int point_of(FaceMark mark) {
+  return mark == FaceMark::Nose ? body25::Nose : body25::RightEye + static_cast<int>(mark) - 1;
+}
+
+FaceMove mirrored(const FaceMove& move, float centre) {
+  constexpr std::array<FaceMark, 5> kOther = {FaceMark::Nose, FaceMark::LeftEye, FaceMark::RightEye,
+                                              FaceMark::LeftEar, FaceMark::RightEar};
+  FaceMove out{kOther[static_cast<size_t>(move.mark)], move.place};
+  out.place.x() = move.mark == FaceMark::Nose ? centre : 2 * centre - move.place.x();
+  return out;
+}
+
+void put(const FaceMove& move, std::vector<FaceMove>& among) {
+  among.erase(
+      std::remove_if(among.begin(), among.end(), [&](const FaceMove& old) { return old.mark == move.mark; }),
+      among.end());
+  among.push_back(move);
+}
+
+FaceMarks moved_marks(FaceMarks found, const Joints& rest, const std::vector<FaceMove>& moves) {
+  for (const FaceMove& move : moves) place_of(move.mark, found) = move.place - rest.row(Head).transpose();
+  return found;
 }
 
 }  // namespace understudy

@@ -90,6 +90,22 @@ TEST(PosePictures, PointsLieWhereAnIndependentProjectionPutsThem) {
   std::printf("farthest off an independent projection: %.5f px of %d points\n", farthest, compared);
 }
 
+TEST(PosePictures, AMarkThatWasMovedIsSeenThere) {
+  const TempFolder folder;
+  ExportInput input = filmed_input();
+  input.body.poses.hides_face = false;
+  film(folder.path("found.json"), input);
+  const Joints& rest = input.body.character->target.joints;
+  const Vec3 moved = rest.row(Head).transpose() + Vec3(0.3f, 0.1f, 0);
+  input.body.face = {{FaceMark::LeftEar, moved}};
+  film(folder.path("moved.json"), input);
+  const KeypointReading found = filmed_poses(folder.path("found.json")),
+                        after = filmed_poses(folder.path("moved.json"));
+  const FlatPose &before = *found.performing().at(0), &now = *after.performing().at(0);
+  EXPECT_GT((now.at(body25::LeftEar) - before.at(body25::LeftEar)).norm(), 5);
+  EXPECT_EQ(now.at(body25::RightEar), before.at(body25::RightEar));
+}
+
 TEST(PosePictures, ByDefaultHoldTheWholeTakeFromTheFront) {
   const TempFolder folder;
   ExportInput input = filmed_input();

@@ -7,10 +7,12 @@
 #include <filesystem>
 #include <fstream>
 
+#include "retarget/base/text.hpp"
 #include "retarget/character/gltf_character.hpp"
 #include "retarget/math/rotation.hpp"
 #include "tests/app/sample_files.hpp"
 #include "tests/retarget/motion/made_motion.hpp"
+#include "tests/support/flat_track.hpp"
 
 namespace understudy::app {
 namespace {
@@ -66,6 +68,13 @@ TEST_F(Preview, OfAFolderWithoutScansNamesNoneOfItsFiles) {
   const PreviewContent content = preview_content(folder_.string());
   EXPECT_EQ(content.text, "No frames of a scan in this folder.");
   EXPECT_EQ(content.mesh.vertices.rows(), 0);
+}
+
+TEST_F(Preview, OfPosesSaysWhatTheyAre) {
+  write_openpose_folder(path("poses"), walking_track(12, 6, 2));
+  EXPECT_EQ(preview_content(path("poses")).text, "OpenPose folder, BODY_25, 12 frames, 2 people");
+  write_controlnet(path("tall.json"), standing_track(1));
+  EXPECT_TRUE(ends_with(preview_content(path("tall.json")).text, "1 frame, 1 person, 640 x 560"));
 }
 
 TEST_F(Preview, OfScansIsTheFirstFrame) {

@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <fstream>
+#include <nlohmann/json.hpp>
 
 #include "app/run/exports.hpp"
 #include "render/image.hpp"
@@ -13,6 +15,8 @@
 
 namespace understudy::app {
 namespace {
+
+using Json = nlohmann::json;
 
 class FlatPath : public ApplicationTest {
  protected:
@@ -27,6 +31,18 @@ class FlatPath : public ApplicationTest {
     make(render::ContextKind::Null, {1280, 2400});
     play("drop " + path("track") + "\nwait\nframes 3\nexpect view.0\nexpect_value frames 12");
     play("drop " + path("tall.png") + "\nwait\nframes 3\nexpect view.1\nexpect_value takes 1");
+  }
+  /// As MediaPipe writes them, in shares of a picture.
+  void write_landmarks() {
+    Json frames = Json::array();
+    for (int t = 0; t < 6; ++t) {
+      Json landmarks = Json::array();
+      for (int k = 0; k < 33; ++k)
+        landmarks.push_back(
+            {{"x", 0.3 + 0.01 * (k % 7)}, {"y", 0.2 + 0.02 * k}, {"z", 0}, {"visibility", 0.9}});
+      frames.push_back(landmarks);
+    }
+    std::ofstream(path("mediapipe.json")) << frames;
   }
   const FlatResult& result(size_t take = 0) const { return *session().takes.at(take).flat; }
   const FlatPoses& source() const { return *session().flat.poses; }
@@ -62,12 +78,72 @@ TEST_F(FlatPath, PointsAreDraggedAndSidesExchangedOverARange) {
   play("expect_value undo_label \"Drag left wrist\"\nkey Ctrl+Z\nwait\nframes 3");
   EXPECT_EQ(source().clean[5].pose.at(body25::LeftWrist), before);
 
-  const Vec2 hip = source().reading.performing().at(3)->at(body25::LeftHip);
+  const Vec2 hip = source().clean[3].pose.at(body25::LeftHip);
   play("playback.frame 2\nclick timeline.in\nplayback.frame 4\nclick timeline.out\nframes 3");
   play("click flat.exchange\nwait\nframes 3\nexpect flat.edit.0");
-  EXPECT_NE(source().reading.performing().at(3)->at(body25::LeftHip), hip);
+  EXPECT_NE(source().clean[3].pose.at(body25::LeftHip), hip);
   play("expect timeline.track.point.0\nclick flat.edit.0\nwait\nframes 3\nexpect_no flat.edit.0");
-  EXPECT_EQ(source().reading.performing().at(3)->at(body25::LeftHip), hip);
+  EXPECT_EQ(source().clean[3].pose.at(body25::LeftHip), hip);
+}
+
+TEST_F(FlatPath, APointThatIsHeldIsPerformedBeforeItIsLetGo) {
+  open_flat();
+  play("playback.frame 5\nwait\nframes 3\nclick flat.tool\nframes 3");
+  const auto wrist = [&] { return result().poses[5].at(body25::LeftWrist); };
+  const Vec2 performed = wrist();
+  const ImVec2 at = application_->find("view.0.point.left_wrist")->rect.at(0.5f, 0.5f);
+  const auto there = [&](float x, float y) {
+    return std::to_string(at.x + x) + " " + std::to_string(at.y + y) + "\nframes 3\n";
+  };
+  play("event move " + there(0, 0) + "event button left down " + there(0, 0) + "event move " +
+       there(20, -20) + "event move " + there(40, -50) + "wait\nframes 3");
+  const Vec2 held = wrist();
+  EXPECT_GT((held - performed).norm(), 20);
+  EXPECT_TRUE(session().document.source.point_edits.empty()) << "no edit yet";
+  play("event button left up " + there(40, -50) + "wait\nframes 3");
+  EXPECT_EQ(session().document.source.point_edits.size(), 1u);
+  EXPECT_EQ(wrist(), held);
+  play("key Ctrl+Z\nwait\nframes 3");
+  EXPECT_EQ(wrist(), performed) << "one drag is one step";
+  EXPECT_FALSE(session().flat.dragging);
+}
+
+TEST_F(FlatPath, AFileThatDoesNotSayHowLargeItsPictureIsAsks) {
+  write_landmarks();
+  make(render::ContextKind::Null, {1280, 1200});
+  play("drop " + path("mediapipe.json") + "\nwait\nframes 3\nexpect canvas.open\nexpect_no error.close");
+  play("click canvas.cancel\nframes 3\nexpect_no canvas.open");
+  EXPECT_TRUE(session().document.source.path.empty());
+  play("drop " + path("mediapipe.json") +
+       "\nwait\nframes 3\nclick canvas.size\nframes 2\nclick canvas.size.1");
+  play("frames 2\nclick canvas.open\nframes 3\nwait\nframes 3\nexpect_value frames 6");
+  EXPECT_EQ(source().reading.canvas, (Canvas{1280, 720}));
+  play("document.save_as \"" + path("mp.understudy") + "\"\nwait");
+  make(render::ContextKind::Null, {1280, 1200});
+  play("open \"" + path("mp.understudy") +
+       "\"\nwait\nframes 3\nexpect_no canvas.open\nexpect_value frames 6");
+}
+
+TEST_F(FlatPath, APersonOfAPictureOfUnknownSizeAsksToo) {
+  open_flat();
+  write_landmarks();
+  play("drop " + path("mediapipe.json") + "\nwait\nframes 3\nclick canvas.cancel\nwait\nframes 3");
+  play("expect_value takes 1\ndrop " + path("mediapipe.json") +
+       "\nwait\nframes 3\nclick canvas.width\nkey Ctrl+A");
+  play("type 800\nkey Enter\nframes 2\nclick canvas.open\nframes 3\nwait\nframes 3\nexpect_value takes 2");
+  ASSERT_TRUE(session().takes[1].flat) << session().takes[1].problem;
+  EXPECT_EQ(result(1).made.canvas, (Canvas{800, 1080}));
+  EXPECT_EQ(session().document.takes[1].flat->canvas, "800x1080");
+}
+
+TEST_F(FlatPath, AFolderOfPosesIsOpenedInTheFileWindow) {
+  make(render::ContextKind::Null, {1280, 800});
+  play("dialog.open open_source\nframes 5");
+  play("key Ctrl+L\nkey Ctrl+A\ntype \"" + folder_.string() + "\"\nkey Enter\nframes 30");
+  play(
+      "expect browser.entry.track\nclick browser.entry.track\nframes 3\nclick browser.accept\nwait\nframes "
+      "3");
+  play("expect_value frames 12\nexpect view.0");
 }
 
 TEST_F(FlatPath, AClickOnAnotherPersonLetsThemPerform) {

@@ -117,7 +117,7 @@ TEST(DocumentFile, OfTheProgramOfBeforeOpensAndIsWrittenAlike) {
     take.flat.reset();
     take.method.part_refiner = take.method.hand_contacts = true, take.method.predict = false;
     for (const Proportion& one : kProportions) take.method.*one.value = Method().*one.value;
-    take.target_edits.rest_pose.clear();
+    take.target_edits.rest_pose.clear(), take.target_edits.face.clear();
     take.method.style = {};
     take.pose_edits.fill.clear(), take.pose_edits.go_on.reset(), take.pose_edits.loop.reset();
     take.pose_edits.tempo.reset();
@@ -139,7 +139,7 @@ TEST(DocumentFile, OfTheProgramOfBeforeOpensAndIsWrittenAlike) {
     take["method"].erase("predict"), take["method"].erase("style");
     for (const Proportion& one : kProportions) take["method"].erase(one.name);
     take["target"].erase("not_a_person"), take.erase("person");
-    take["target_edits"].erase("rest_pose");
+    take["target_edits"].erase("rest_pose"), take["target_edits"].erase("face");
     take["pose_edits"].erase("fill");
   }
   auto& view = written["view"];

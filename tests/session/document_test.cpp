@@ -109,6 +109,7 @@ const Changes& document_changes() {
       CHANGE(takes[1].flat->touches = true),
       CHANGE(takes[1].flat->growth = true),
       CHANGE(takes[1].flat->person.clear()),
+      CHANGE(takes[1].flat->canvas.clear()),
       CHANGE(takes[1].flat->lengths[0].bone = "trunk"),
       CHANGE(takes[1].flat->lengths[0].pixels = 1),
       CHANGE(takes[1].flat->lengths[0].locked = false),
@@ -165,6 +166,9 @@ const Changes& document_changes() {
       TAKE(target_edits.joints[0].mirror = true),
       TAKE(target_edits.weights.reset()),
       TAKE(target_edits.rest_pose.pop_back()),
+      TAKE(target_edits.face.pop_back()),
+      TAKE(target_edits.face[0].mark = FaceMark::LeftEar),
+      TAKE(target_edits.face[0].place.y() = 0),
       TAKE(target_edits.rest_pose[0].joint = RightCollar),
       TAKE(target_edits.rest_pose[0].axis_angle.z() = 0),
       {"weights.vertex",
@@ -242,7 +246,8 @@ const Changes& document_changes() {
   [[maybe_unused]] const auto& [ahead] = FlatSource();
   [[maybe_unused]] const auto& [point_frame, point, point_x, point_y, point_falloff] = PointDrag();
   [[maybe_unused]] const auto& [sides_first, sides_last, sides] = SidesExchange();
-  [[maybe_unused]] const auto& [flat_engine, place, touches, grows, flat_person, flat_lengths] = FlatTake();
+  [[maybe_unused]] const auto& [flat_engine, place, touches, grows, flat_person, flat_canvas, flat_lengths] =
+      FlatTake();
   [[maybe_unused]] const auto& [bone, pixels, locked] = ChosenLength();
   [[maybe_unused]] const auto& [canvas_x, canvas_y, zoom] = CanvasView();
   [[maybe_unused]] const auto& [wanted, most, bone_edits, second] = OwnBones();
@@ -272,7 +277,8 @@ const Changes& document_changes() {
   [[maybe_unused]] const auto& [by, length, anticipation, stroke, recovery, unlike, tempo_marks] =
       TempoEdit();
   [[maybe_unused]] const auto& [mark_frame, later] = TempoMark();
-  [[maybe_unused]] const auto& [moves, weights, rest_pose] = TargetEdits();
+  [[maybe_unused]] const auto& [moves, weights, rest_pose, face] = TargetEdits();
+  [[maybe_unused]] const auto& [face_mark, face_place] = FaceMove();
   [[maybe_unused]] const auto& [turned_joint, axis_angle] = BoneTurn();
   [[maybe_unused]] const auto& [moved, position, mirror] = JointMove();
   [[maybe_unused]] const auto& [vertex, rows, places, of] = WeightRows();
@@ -354,7 +360,8 @@ Document made_anew(Document document) {
       std::remove_if(takes.begin(), takes.end(), [](const Take& take) { return take.flat.has_value(); }),
       takes.end());
   for (Take& take : document.takes)
-    take.name.clear(), take.target_edits.weights.reset(), take.pose_edits = {};
+    take.name.clear(), take.target_edits.weights.reset(), take.target_edits.face.clear(),
+        take.pose_edits = {};
   return document;
 }
 

@@ -60,6 +60,7 @@ Take take(const std::string& folder) {
   take.target_edits.joints = {{LeftWrist, Vec3(0.7f, 1.4f, 0.02f), false}, {Spine1, Vec3(0, 1.1f, 0), true}};
   take.target_edits.weights = weight_rows();
   take.target_edits.rest_pose = {{LeftShoulder, Vec3(0, 0.1f, -0.75f)}};
+  take.target_edits.face = {{FaceMark::RightEye, Vec3(-0.03f, 1.6f, 1 / 9.0f)}};
   take.pose_edits = pose_edits();
   return take;
 }
@@ -150,7 +151,7 @@ SavedDocument full_document(const std::string& folder) {
                                        SidesExchange{3, 9, SidesExchange::Limbs::Legs}};
   saved.document.flat = FlatSource{false};
   saved.document.takes[1].flat =
-      FlatTake{"paper", FlatPlace::Source, false, false, "2", {{"left_thigh", 120.5f, true}}};
+      FlatTake{"paper", FlatPlace::Source, false, false, "2", "640x360", {{"left_thigh", 120.5f, true}}};
   saved.view = view();
   saved.playback.loop = false;
   saved.playback.rate = 0.25;

@@ -79,6 +79,22 @@ TEST_F(FlatStudioTest, ASlidLengthIsPerformedOnBothSidesAndUndone) {
   EXPECT_FLOAT_EQ(length_in(result(studio).poses[2], flat_bone::LeftForearm), before);
 }
 
+TEST_F(FlatStudioTest, SlidesOfTwoBonesAreTwoStepsHoweverSoon) {
+  Studio studio(services());
+  open_flat(studio);
+  const float forearm = result(studio).lengths.length[flat_bone::LeftForearm];
+  for (const char* const pixels : {"100", "120"}) studio.run("flat.length", {"0", "left_thigh", pixels});
+  for (const char* const pixels : {"70", "90"}) studio.run("flat.length", {"0", "left_forearm", pixels});
+  for (const char* const point : {"left_wrist", "right_wrist"})
+    studio.run("flat.drag", {"3", point, "260", "90", "0"});
+  studio.run("edit.undo");
+  EXPECT_EQ(studio.session().document.source.point_edits.size(), 1u);
+  studio.run("edit.undo"), studio.run("edit.undo");
+  studio.wait_idle();
+  EXPECT_FLOAT_EQ(result(studio).lengths.length[flat_bone::LeftForearm], forearm);
+  EXPECT_FLOAT_EQ(result(studio).lengths.length[flat_bone::LeftThigh], 120) << "one slide is one step";
+}
+
 TEST_F(FlatStudioTest, ALockedLengthStaysWhenTheOtherSideOrThePersonGrows) {
   Studio studio(services());
   open_flat(studio);
@@ -108,9 +124,7 @@ TEST_F(FlatStudioTest, ADraggedPointIsWhereItWasPutAndPerformed) {
 TEST_F(FlatStudioTest, SidesAreExchangedOverARangeAndBackAgain) {
   Studio studio(services());
   open_flat(studio);
-  const auto hip = [&](int t) {
-    return studio.session().flat.poses->reading.performing().at(t)->at(body25::LeftHip);
-  };
+  const auto hip = [&](size_t t) { return studio.session().flat.poses->clean[t].pose.at(body25::LeftHip); };
   const Vec2 before = hip(4), outside = hip(6);
   studio.run("edit.swap", {"2", "4", "legs"});
   studio.wait_idle();
@@ -119,6 +133,24 @@ TEST_F(FlatStudioTest, SidesAreExchangedOverARangeAndBackAgain) {
   studio.run("flat.exchange", {"2", "4", "legs"});
   studio.wait_idle();
   EXPECT_EQ(hip(4), before);
+}
+
+TEST_F(FlatStudioTest, AnExchangeOverrulesSidesThatWerePutBack) {
+  KeypointReading track = walking_track(24);
+  for (TrackedPose& pose : track.tracks[0].poses)
+    if (pose.frame >= 10 && pose.frame < 14) pose.pose = sides_exchanged(pose.pose);
+  write_openpose_folder(path("swapped"), track);
+  Studio studio(services());
+  studio.run("open", {path("swapped")});
+  studio.wait_idle();
+  const auto clean = [&](size_t t) { return studio.session().flat.poses->clean[t]; };
+  const CleanPose mended = clean(11), outside = clean(16);
+  ASSERT_TRUE(mended.sides_mended);
+  studio.run("flat.exchange", {"10", "13"});
+  studio.wait_idle();
+  EXPECT_EQ(clean(11).pose, sides_exchanged(mended.pose)) << "as the file has it";
+  EXPECT_TRUE(clean(11).problem.empty()) << clean(11).problem;
+  EXPECT_EQ(clean(16).pose, outside.pose);
 }
 
 TEST_F(FlatStudioTest, AnotherPersonPerforms) {

@@ -89,6 +89,20 @@ TEST_F(Browser, AFolderOfGlbFramesIsAScanAndOneOfCharactersIsNot) {
   EXPECT_FALSE(shown("browser.look.people"));
 }
 
+TEST_F(Browser, AFolderOfPosesIsChosenAsAWholeAndOneOfOtherJsonsIsNot) {
+  for (const char* folder : {"poses", "settings"}) fs::create_directories(root / folder);
+  for (const char* name : {"a_1.json", "a_2.json"}) {
+    std::ofstream(root / "poses" / name) << R"({"people": []})";
+    std::ofstream(root / "settings" / name) << R"({"theme": "dark"})";
+  }
+  open({filter_of(FileKind::Source)});
+  EXPECT_TRUE(shown("browser.look.poses"));
+  EXPECT_FALSE(shown("browser.look.settings"));
+  click("browser.entry.poses");
+  click("browser.accept");
+  EXPECT_EQ(chosen, path("poses"));
+}
+
 TEST_F(Browser, AsManyFilesOfTwoFormatsAreNoScan) {
   fs::create_directories(root / "people");
   for (const char* name : {"anna.ply", "bert.ply", "anna.glb", "bert.glb"})

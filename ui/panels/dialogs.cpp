@@ -1,7 +1,9 @@
 #include "ui/panels/dialogs.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <utility>
 
 #include "retarget/base/index.hpp"
 #include "retarget/base/text.hpp"
@@ -101,6 +103,53 @@ void draw_not_a_person(const app::Session& session, PanelContext& context) {
   const Answer answer = ask(context.ui, "person", question);
   if (answer == Answer::Yes) context.ask("target.use_anyway", {std::to_string(session.question->take)});
   if (answer == Answer::Cancel) context.ask("question.answer", {"cancel"});
+}
+
+/// Of pictures and films.
+constexpr std::array<std::pair<Canvas, const char*>, 6> kPictureSizes = {{{{1920, 1080}, "1080p"},
+                                                                          {{1280, 720}, "720p"},
+                                                                          {{1080, 1920}, "1080p, tall"},
+                                                                          {{720, 1280}, "720p, tall"},
+                                                                          {{640, 480}, "VGA"},
+                                                                          {{3840, 2160}, "4K"}}};
+
+void draw_canvas_rows(Ui& ui, Canvas& canvas) {
+  std::vector<std::string> labels;
+  int chosen = -1;
+  for (const auto& [size, words] : kPictureSizes) {
+    if (size == canvas) chosen = static_cast<int>(labels.size());
+    labels.push_back(canvas_text(size) + "   " + words);
+  }
+  row(ui, "Size", "Of the picture or the film in which the points were found");
+  if (dropdown(ui, "canvas.size", labels, chosen)) canvas = kPictureSizes[static_cast<size_t>(chosen)].first;
+  const auto side = [](double pixels) { return static_cast<int>(std::clamp(pixels, 1.0, 65536.0)); };
+  if (const auto w = typed_number_row(ui, {"canvas.width", "Width", "Pixels"}, canvas.width, 0))
+    canvas.width = side(*w);
+  if (const auto h = typed_number_row(ui, {"canvas.height", "Height", "Pixels"}, canvas.height, 0))
+    canvas.height = side(*h);
+}
+
+void draw_canvas_question(const app::Session& session, PanelContext& context) {
+  Ui& ui = context.ui;
+  if (!begin_dialog(ui, "canvas", "How large is the picture?", 420)) return;
+  paragraph(session.question->text);
+  Canvas& canvas = ui.state<Canvas>(ImGui::GetID("##canvas"));
+  if (!canvas.is_known()) canvas = kPictureSizes[0].first;
+  draw_canvas_rows(ui, canvas);
+  ImGui::Dummy({0, ui.px(4)});
+  ButtonRow buttons(2);
+  ButtonOptions open;
+  open.look = ButtonLook::Main;
+  const bool cancels = buttons.add(ui, "canvas.cancel", "Cancel", {});
+  const bool opens = buttons.add(ui, "canvas.open", "Open", open);
+  if (finish_dialog(!cancels && !opens)) return;
+  context.ask("question.answer", {opens ? "discard" : "cancel"});
+  if (!opens) return;
+  app::Arguments words = app::split_line(session.question->then);
+  const std::string command = words.front();
+  words.erase(words.begin());
+  words.push_back(std::to_string(canvas.width) + "x" + std::to_string(canvas.height));
+  context.ask(command, words);
 }
 
 void draw_method_rows(app::Method& method, Ui& ui) {
@@ -212,6 +261,8 @@ void draw_question(const app::Session& session, PanelContext& context, FilesStat
       return draw_paint(session, context);
     case Kind::NotAPerson:
       return draw_not_a_person(session, context);
+    case Kind::Canvas:
+      return draw_canvas_question(session, context);
     default:
       return draw_unsaved(session, context, files);
   }

@@ -500,6 +500,28 @@ void draw_weights(const app::Session& session, PanelContext& context) {
   clear_button(context, "edit.weights_clear", painted, k);
 }
 
+/// Of pose pictures.
+void draw_face(const app::Session& session, PanelContext& context) {
+  Ui& ui = context.ui;
+  if (!section(ui, "edit.face", take_title(session, "Marks of the face"), false)) return;
+  const app::Take* take = selected_take(session);
+  if (take == nullptr || take->flat) return hint(ui, "Add a target with a head first.");
+  const std::string k = std::to_string(session.selected_take);
+  tool_button(session, context,
+              {"edit.face_tool", "", "Where pose pictures have nose, eyes and ears of this target"},
+              app::Tool::Face);
+  ask_toggle(context,
+             {"edit.face_mirror", "Both sides",
+              "The mark on the other side follows; the nose stays in the middle", "tool.mirror"},
+             session.mirror_joint);
+  const auto& face = take->target_edits.face;
+  for (size_t i = 0; i < face.size(); ++i)
+    edit_line(context, "edit.face." + std::to_string(i), face_mark_label(face[i].mark), -1,
+              {"face", k, std::to_string(i)});
+  if (face.empty()) hint(ui, "Found on the head's surface; drag what lies wrong.");
+  clear_button(context, "edit.face_clear", !face.empty(), k);
+}
+
 }  // namespace
 
 void draw_edit(const app::Session& session, PanelContext& context) {
@@ -509,6 +531,7 @@ void draw_edit(const app::Session& session, PanelContext& context) {
   draw_result(session, context);
   draw_target(session, context);
   draw_weights(session, context);
+  draw_face(session, context);
 }
 
 }  // namespace understudy::ui

@@ -309,7 +309,8 @@ std::string frames_words_of_flat(const app::Session& session) {
   return grouped(app::frame_count(session)) + " frames";
 }
 
-void draw_animation_rows(const app::Session& session, PanelContext& context, ExportState& state) {
+void draw_animation_rows(const app::Session& session, PanelContext& context, ExportState& state,
+                         FilesState& files) {
   Ui& ui = context.ui;
   if (state.is_flat) {
     draw_take_rows(session, context, state);
@@ -328,7 +329,7 @@ void draw_animation_rows(const app::Session& session, PanelContext& context, Exp
       draw_character_rows(ui, *made, own_bones && on_own_bones(*format, state), state);
     if (format->is_pictures) {
       if (format->suffix == std::string(".mp4")) draw_film_row(session, ui, state);
-      draw_pose_rows(ui, state);
+      draw_pose_rows(session, context, state, files);
     } else {
       draw_path_rows(ui, format->is_character, state.choice.file);
     }
@@ -506,6 +507,14 @@ bool draw_overwrite(const app::Session& session, PanelContext& context, ExportSt
   return answer != Answer::Yes;
 }
 
+/// Whether a choice is missing without which nothing can be written.
+bool is_unfinished(const app::Session& session, const ExportState& state) {
+  if (state.kind != ExportKind::Animation) return false;
+  const app::ExportFormat* const format = state.is_flat ? nullptr : format_of(state);
+  const bool lays = format != nullptr && format->is_pictures && state.lays_onto;
+  return takes_of_file(session, state).empty() || (lays && state.choice.poses.camera.reference.empty());
+}
+
 const char* title_of(ExportKind kind) {
   return kind == ExportKind::Animation ? "Export"
          : kind == ExportKind::Picture ? "Save picture"
@@ -555,6 +564,10 @@ void choose_path(ExportState& state, const std::string& path) {
   state.path = state.agreed = path, state.typed = true;
 }
 
+void choose_reference(ExportState& state, const std::string& path) {
+  state.choice.poses.camera.reference = path;
+}
+
 bool export_failed(const app::Session& session, ExportState& state) {
   const auto is_it = [&](const app::Notice& error) { return error.details == state.asked; };
   if (state.asked.empty() || std::none_of(session.errors.begin(), session.errors.end(), is_it)) return false;
@@ -569,7 +582,7 @@ bool draw_export(const app::Session& session, PanelContext& context, ExportState
   if (!begin_dialog(ui, "export", title_of(state.kind), 460)) return true;
   draw_choices_above(ui, [&] {
     if (state.kind == ExportKind::Animation)
-      draw_animation_rows(session, context, state);
+      draw_animation_rows(session, context, state, files);
     else
       draw_picture_rows(session, ui, state);
   });
@@ -578,8 +591,7 @@ bool draw_export(const app::Session& session, PanelContext& context, ExportState
   ImGui::Dummy({0, ui.px(4)});
   ButtonRow buttons(2);
   ButtonOptions save;
-  save.look = ButtonLook::Main, save.disabled = state.path.empty() || (state.kind == ExportKind::Animation &&
-                                                                       takes_of_file(session, state).empty());
+  save.look = ButtonLook::Main, save.disabled = state.path.empty() || is_unfinished(session, state);
   bool stays = !buttons.add(ui, "export.cancel", "Cancel", {});
   const bool entered = path.entered || (enter_pressed() && !ImGui::GetIO().WantTextInput);
   if (buttons.add(ui, "export.save", "Save", save) ||

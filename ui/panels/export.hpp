@@ -32,6 +32,7 @@ struct ExportState {
   std::string path;           ///< whole, with its suffix; of a file each their folder
   bool is_flat = false;       ///< the current take is of 2D poses
   int flat_as = 0;            ///< what such a take is written as, a place in kFlatSuffixes
+  bool lays_onto = false;     ///< pose pictures: the camera lays the take onto a reference's poses
   bool typed = false;         ///< the path, or chosen; else it follows the take
   int width = 1920, height = 1080;
   bool all = true;                      ///< all views; false: the active one
@@ -45,8 +46,9 @@ struct ExportState {
 /// Opens the dialog of that name, with a new path to propose and the format used last: export, csv, picture
 /// or video. False, and nothing changed, for another name.
 bool begin_export(const app::Session& session, ExportState& state, const std::string& dialog);
-/// Takes the path that the browser gave.
+/// Takes the path that the browser gave: of the export, or of the poses it is laid onto.
 void choose_path(ExportState& state, const std::string& path);
+void choose_reference(ExportState& state, const std::string& path);
 /// Whether what the dialog asked for last is among the errors: it comes back then, with all its choices.
 /// True once.
 bool export_failed(const app::Session& session, ExportState& state);

@@ -1,7 +1,9 @@
 #include "ui/panels/export_poses.hpp"
 
 #include <algorithm>
+#include <optional>
 
+#include "retarget/base/text.hpp"
 #include "ui/panels/rows.hpp"
 
 namespace understudy::ui {
@@ -36,18 +38,90 @@ void draw_count(Ui& ui, app::PoseChoice& poses) {
     poses.count = {0, how == 1};
 }
 
-void draw_canvas(Ui& ui, app::PoseChoice& poses) {
+/// Sizes that generators ask for; before them, where there is a reference, its own.
+void draw_canvas(Ui& ui, app::PoseChoice& poses, bool has_reference) {
   const auto& presets = app::kCanvasPresets;
-  const Canvas now = poses.canvas.value_or(Canvas{832, 480});
+  const std::optional<Canvas> now = poses.canvas || has_reference ? poses.canvas : Canvas{832, 480};
   std::vector<std::string> labels;
   int chosen = -1;
+  if (has_reference) {
+    if (!now) chosen = 0;
+    labels.push_back("As the reference");
+  }
+  const size_t before = labels.size();
   for (const app::CanvasPreset& preset : presets) {
     if (preset.canvas == now) chosen = static_cast<int>(labels.size());
     labels.push_back(canvas_text(preset.canvas) + "   " + preset.words);
   }
   row(ui, "Canvas", "Size of the pictures, and who asks for it");
-  if (dropdown(ui, "export.canvas", labels, chosen))
-    poses.canvas = presets[static_cast<size_t>(chosen)].canvas;
+  if (!dropdown(ui, "export.canvas", labels, chosen)) return;
+  const auto k = static_cast<size_t>(chosen);
+  poses.canvas = k < before ? std::nullopt : std::optional<Canvas>(presets[k - before].canvas);
+}
+
+/// Files of 2D poses that the document has open.
+std::vector<std::string> open_poses(const app::Session& session) {
+  std::vector<std::string> paths;
+  const auto add = [&](const std::string& path) {
+    if (std::find(paths.begin(), paths.end(), path) == paths.end()) paths.push_back(path);
+  };
+  if (session.document.flat) add(session.document.source.path);
+  for (size_t k = 0; k < session.takes.size(); ++k)
+    if (const auto& flat = session.takes[k].flat; flat && flat->reference->target.standing)
+      add(session.document.takes[k].target.path);
+  return paths;
+}
+
+/// What the first frame is laid onto.
+void draw_reference(const app::Session& session, Ui& ui, ExportState& state, FilesState& files) {
+  std::vector<std::string> paths = open_poses(session), labels;
+  std::string& now = state.choice.poses.camera.reference;
+  if (now.empty() && !paths.empty()) now = paths.front();
+  auto found = std::find(paths.begin(), paths.end(), now);
+  if (found == paths.end() && !now.empty()) found = paths.insert(paths.end(), now);
+  int chosen = now.empty() ? -1 : static_cast<int>(found - paths.begin());
+  for (const std::string& path : paths) labels.push_back(file_name(path));
+  labels.push_back("Choose poses\u2026");
+  row(ui, "Reference", "2D poses of a picture: the first frame is laid onto the first of them");
+  if (paths.empty()) {
+    ButtonOptions wide;
+    wide.width = -1;
+    if (button(ui, "export.reference", labels.back(), wide))
+      choose_file(session, files, FilePurpose::Reference);
+    return;
+  }
+  if (!dropdown(ui, "export.reference", labels, chosen, paths)) return;
+  if (static_cast<size_t>(chosen) < paths.size())
+    now = paths[static_cast<size_t>(chosen)];
+  else
+    choose_file(session, files, FilePurpose::Reference);
+}
+
+void draw_camera(const app::Session& session, Ui& ui, ExportState& state, FilesState& files) {
+  int camera = state.choice.pane_camera ? 0 : state.lays_onto ? 2 : 1;
+  if (choice_row(
+          ui,
+          {"export.camera",
+           "Camera",
+           "What the pictures are seen through",
+           "",
+           {"As the take's view is seen now", "Before the front of the first frame, all of the take in view",
+            "In which the first frame lies on the person of a picture, by their 2D poses"}},
+          {"This view", "Whole take", "Onto poses"}, camera)) {
+    state.choice.pane_camera = camera == 0, state.lays_onto = camera == 2;
+    if (!state.lays_onto) state.choice.poses.camera.reference.clear();
+  }
+  if (state.lays_onto) draw_reference(session, ui, state, files);
+}
+
+/// Leaves the dialog for the tool.
+void draw_face_button(PanelContext& context) {
+  ButtonOptions options;
+  options.width = -1;
+  options.tooltip = "Shows where nose, eyes and ears are on the head, to drag what lies wrong";
+  if (!button(context.ui, "export.face", "Place the face's marks\u2026", options)) return;
+  context.ask("tool", {app::kToolNames[static_cast<size_t>(app::Tool::Face)]});
+  context.ask("dialog.open", {"none"});
 }
 
 void draw_beside(Ui& ui, app::PoseChoice& poses) {
@@ -64,19 +138,12 @@ void draw_beside(Ui& ui, app::PoseChoice& poses) {
 
 }  // namespace
 
-void draw_pose_rows(Ui& ui, ExportState& state) {
+void draw_pose_rows(const app::Session& session, PanelContext& context, ExportState& state,
+                    FilesState& files) {
+  Ui& ui = context.ui;
   app::PoseChoice& poses = state.choice.poses;
-  int camera = state.choice.pane_camera ? 0 : 1;
-  if (choice_row(ui,
-                 {"export.camera",
-                  "Camera",
-                  "What the pictures are seen through",
-                  "",
-                  {"As the take's view is seen now",
-                   "Before the front of the first frame, all of the take in view"}},
-                 {"This view", "Whole take"}, camera))
-    state.choice.pane_camera = camera == 0;
-  draw_canvas(ui, poses);
+  draw_camera(session, ui, state, files);
+  draw_canvas(ui, poses, state.lays_onto);
   if (const auto rate = typed_number_row(ui, {"export.rate", "Pictures/s", "0: the source's"}, poses.rate, 2))
     poses.rate = std::clamp(*rate, 0.0, 1000.0);
   draw_count(ui, poses);
@@ -87,6 +154,7 @@ void draw_pose_rows(Ui& ui, ExportState& state) {
       poses.hides_limbs);
   toggle_row(ui, {"export.hide_face", "Hide face", "Nose, eyes and ears vanish where the head turns away"},
              poses.hides_face);
+  draw_face_button(context);
   draw_beside(ui, poses);
   toggle_row(ui, {"export.depth", "Depth", "Of the same view, beside"}, poses.depth);
   toggle_row(ui, {"export.normals", "Normals", "Of the same view, beside"}, poses.normals);
@@ -124,6 +192,7 @@ app::Arguments pose_words(const app::ExportChoice& choice, bool is_flat) {
       app::kPoseFileNames[static_cast<size_t>(poses.file)]);
   if (is_flat) return words;
   add(choice.pane_camera, "camera", "view");
+  add(!poses.camera.reference.empty(), "camera", poses.camera.reference);
   if (poses.canvas)
     add(true, "canvas", std::to_string(poses.canvas->width) + "x" + std::to_string(poses.canvas->height));
   add(poses.rate > 0, "rate", argument(poses.rate));

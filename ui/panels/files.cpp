@@ -55,6 +55,7 @@ constexpr FileDialog kDialogs[] = {
     {"study_psychopy", "study.export psychopy", "Export trials for PsychoPy", "Export", FileKind::Any, true},
     {"study_stimuli", "study.render", "Render stimuli into a folder", "Render", FileKind::Any, true},
     {"", "", "Choose the folder", "Use it", FileKind::Folder},
+    {"", "", "2D poses of the reference", "Use", FileKind::Poses},
     {"", "", "Where to", "Choose", FileKind::Any, true}};
 
 const FileDialog& dialog_of(FilePurpose purpose) {
@@ -153,7 +154,8 @@ void choose_file(const app::Session& session, FilesState& state, FilePurpose pur
 
 std::optional<std::string> draw_files(const app::Session& session, PanelContext& context, FilesState& state) {
   std::optional<std::string> path = state.browser.draw(context.ui);
-  const bool comes_back = state.purpose == FilePurpose::Export || state.purpose == FilePurpose::Folder;
+  const bool comes_back = state.purpose == FilePurpose::Export || state.purpose == FilePurpose::Folder ||
+                          state.purpose == FilePurpose::Reference;
   if (!path || comes_back) return path;
   if (state.purpose == FilePurpose::Source && is_smpl_body(*path)) {
     choose_file(session, state, FilePurpose::BodyMotion, *path);

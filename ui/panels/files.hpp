@@ -41,8 +41,9 @@ enum class FilePurpose {
   TrialsJsPsych,
   TrialsPsychoPy,
   Stimuli,
-  Folder,  ///< comes back to the dialog that asked
-  Export   ///< comes back to the export dialog
+  Folder,     ///< comes back to the dialog that asked
+  Reference,  ///< comes back to the export dialog: poses that the camera lays a take onto
+  Export      ///< comes back to the export dialog
 };
 
 struct FilesState {

@@ -47,6 +47,8 @@ std::vector<MouseUse> own_uses(app::Tool tool) {
     case app::Tool::RestPose:
       return {{"Click a joint of the target", "Chooses its bone"},
               {"Drag a ring", "Turns it in the rest pose"}};
+    case app::Tool::Face:
+      return {{"Drag a mark of the face", "Moves it over the head, for pose pictures"}};
     case app::Tool::Paint:
       return {{"Click a joint or a found one", "Chooses whose weights are painted"},
               {"Drag on the target or on a found surface", "Paints them"}};

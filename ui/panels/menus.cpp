@@ -113,6 +113,7 @@ Items target_menu(const app::Session& session) {
                  {"Replace\u2026", "target.replace"},
                  {"Compare with\u2026", "compare.add"},
                  tool_item(session, app::Tool::RestPose),
+                 tool_item(session, app::Tool::Face),
                  {take == nullptr ? "Remove" : "Remove " + take->name, "target.remove", {k}}};
   if (!session.document.takes.empty()) items.push_back(kLine);
   for (size_t i = 0; i < session.document.takes.size(); ++i)

@@ -21,6 +21,7 @@ std::optional<bool> has_to_clear(const app::Session& session, const std::string&
   const app::Take& take = selected != nullptr ? *selected : none;
   if (command == "edit.poses_clear") return !same(take.pose_edits, none.pose_edits);
   if (command == "edit.target_joints_clear") return !take.target_edits.joints.empty();
+  if (command == "edit.face_clear") return !take.target_edits.face.empty();
   if (command == "edit.weights_clear") return take.target_edits.weights != nullptr;
   return std::nullopt;
 }

@@ -222,6 +222,7 @@ void Workspace::draw_dialog(const app::Session& session, PanelContext& context) 
   } else if (files_.browser.is_open()) {
     const auto path = draw_files(session, context, files_);
     if (path && files_.purpose == FilePurpose::Export) choose_path(export_, *path);
+    if (path && files_.purpose == FilePurpose::Reference) choose_reference(export_, *path);
     if (path && files_.purpose == FilePurpose::Folder) choose_folder(*path);
   } else if (session.question) {
     draw_question(session, context, files_);

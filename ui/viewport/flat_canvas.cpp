@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "render/pose_picture.hpp"
 #include "retarget/base/index.hpp"
@@ -219,18 +220,10 @@ void FlatCanvas::use_left(const Session& session, const PaneContent& pane, const
     hovered_ = dragged_   ? dragged_->first
                : now.over ? point_under(clean->pose, place, canvas, now.at, context.ui.px(kPointReach))
                           : -1;
-    if (now.pressed && hovered_ >= 0) dragged_ = {hovered_, clean->pose.at(hovered_)};
-    if (!dragged_) return;
-    if (now.moved.x != 0 || now.moved.y != 0) dragged_->second = on_canvas(now.at, place, canvas);
-    if (now.held) return;
-    const auto [point, to] = *dragged_;
-    dragged_.reset();
-    if ((to - clean->pose.at(point)).norm() < 1e-3f) return;
-    return context.ask("flat.drag",
-                       {std::to_string(frame), kBodyPointNames[static_cast<size_t>(point)],
-                        argument(static_cast<double>(to.x())), argument(static_cast<double>(to.y()))});
+    if (now.pressed && hovered_ >= 0) dragged_ = {hovered_, clean->pose.at(hovered_)}, is_moved_ = false;
+    return drag(frame, now, place, canvas, context);
   }
-  dragged_.reset();
+  if (std::exchange(dragged_, std::nullopt)) context.ask("flat.dragging", {"none"});
   const ImGuiIO& io = ImGui::GetIO();
   const bool clicked = now.released && now.over && session.tool == app::Tool::Look &&
                        io.MouseDragMaxDistanceSqr[0] < io.MouseDragThreshold * io.MouseDragThreshold;
@@ -238,6 +231,20 @@ void FlatCanvas::use_left(const Session& session, const PaneContent& pane, const
   const int64_t person = person_under(*session.flat.poses, frame, place, now.at, context.ui.px(kPersonReach));
   if (person > 0 && person != session.flat.poses->reading.performing().person)
     context.ask("source.person", {std::to_string(person)});
+}
+
+/// Shown by those who perform, too, while it goes on; an edit when the point is let go.
+void FlatCanvas::drag(int frame, const Pointer& now, const Rect& place, const Canvas& canvas,
+                      PanelContext& context) {
+  if (!dragged_) return;
+  const bool moves = now.moved.x != 0 || now.moved.y != 0;
+  if (moves) dragged_->second = on_canvas(now.at, place, canvas), is_moved_ = true;
+  const auto [point, to] = *dragged_;
+  if (!now.held) dragged_.reset();
+  if (!is_moved_ || (now.held && !moves)) return;
+  context.ask(now.held ? "flat.dragging" : "flat.drag",
+              {std::to_string(frame), kBodyPointNames[static_cast<size_t>(point)],
+               argument(static_cast<double>(to.x())), argument(static_cast<double>(to.y()))});
 }
 
 /// The wheel zooms about the pointer; what is dragged otherwise moves it; a double click shows all of it.

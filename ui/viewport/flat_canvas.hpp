@@ -51,11 +51,13 @@ class FlatCanvas {
              PanelContext& context);
   void use_left(const app::Session& session, const PaneContent& pane, const Rect& rect, const Pointer& now,
                 PanelContext& context);
+  void drag(int frame, const Pointer& now, const Rect& place, const Canvas& canvas, PanelContext& context);
 
   std::optional<render::gl::Texture> texture_;
   std::string shown_;  // what the texture is of
   render::Image image_;
   std::optional<MovedPoint> dragged_;
+  bool is_moved_ = false;
   int hovered_ = -1;  // point
 };
 

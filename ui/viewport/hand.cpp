@@ -128,6 +128,7 @@ void Hand::leave() {
   handle_ = GizmoHandle::None;
   hovered_ = face_ = -1;
   brush_.reset();
+  face_hand_.let_go();
   tip_.clear();
 }
 
@@ -144,6 +145,11 @@ bool Hand::work(const HandPlace& place, const Pointer& pointer, app::CommandQueu
   tip_.clear();
   on_found_ = tool_on_found_bones(place.session, place.pane);
   const Tool tool = place.session.tool;
+  if (tool == Tool::Face) {
+    const bool taken = face_hand_.work(place, pointer, queue);
+    tip_ = face_hand_.tip();
+    return taken;
+  }
   if (tool == Tool::Paint) return paint(place, pointer, queue);
   brush_.reset();
   return tool == Tool::Crop ? work_on_box(place, pointer, queue) : work_on_joints(place, pointer, queue);

@@ -8,6 +8,7 @@
 #include "app/session/commands.hpp"
 #include "app/session/source_drag.hpp"
 #include "retarget/rig/rig_edits.hpp"
+#include "ui/viewport/face_hand.hpp"
 #include "ui/viewport/scene_builder.hpp"
 
 namespace understudy::ui {
@@ -30,7 +31,7 @@ class Hand {
   bool work(const HandPlace& place, const Pointer& pointer, app::CommandQueue& queue);
   /// Cancels the current drag (Escape, another tool).
   void let_go();
-  bool busy() const { return grip_ != Grip::None; }
+  bool busy() const { return grip_ != Grip::None || face_hand_.busy(); }
   /// The pane that the pointer was in last, or that a drag began in.
   const PaneContent& pane() const { return pane_; }
 
@@ -50,6 +51,7 @@ class Hand {
   std::optional<BrushPlace> brush(const PaneContent& pane) const {
     return pane == pane_ ? brush_ : std::nullopt;
   }
+  const FaceHand& face() const { return face_hand_; }
   /// A tip beside the pointer: what a click would do; often empty.
   const std::string& tip() const { return tip_; }
 
@@ -108,6 +110,7 @@ class Hand {
   std::shared_ptr<const app::PosedPicture> released_picture(const HandPlace& place) const;
 
   Grip grip_ = Grip::None;
+  FaceHand face_hand_;
   PaneContent pane_;  ///< the one that the pointer is in or the drag began in
   int hovered_ = -1;
   bool on_found_ = false;  ///< the tool is about found bones there, and so is what is hovered

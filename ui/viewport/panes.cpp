@@ -35,16 +35,13 @@ std::string method_words(const app::Method& method) {
   return words;
 }
 
-/// The T-pose is seen where the person would be.
-Vec3 rest_offset(const Session& session, const PaneContent& pane) {
-  const Target& target = *shown_target(*first_take(session, pane));
-  const Points& vertices = target.mesh.vertices;
-  const float floor = vertices.rows() > 0 ? vertices.col(1).minCoeff() : 0;
-  Vec3 offset(target.joints(Pelvis, 0), floor, target.joints(Pelvis, 2));
-  if (shows_as_loaded(session, pane) && vertices.rows() > 0) {  // its joints are not known yet
-    const Vec3 middle = 0.5f * (vertices.colwise().minCoeff() + vertices.colwise().maxCoeff()).transpose();
-    offset = Vec3(middle.x(), floor, middle.z());
-  }
+/// As app::rest_offset; the joints are not known yet.
+Vec3 offset_as_loaded(const Session& session, const PaneContent& pane) {
+  const Points& vertices = shown_target(*first_take(session, pane))->mesh.vertices;
+  if (vertices.rows() == 0) return Vec3::Zero();
+  const Vec3 low = vertices.colwise().minCoeff().transpose(),
+             high = vertices.colwise().maxCoeff().transpose();
+  Vec3 offset(0.5f * (low.x() + high.x()), low.y(), 0.5f * (low.z() + high.z()));
   const Joints* now = app::pane_joints(session, pane.number, pane_frame(session, pane));
   if (!session.view.follow && now != nullptr) offset -= Vec3((*now)(Pelvis, 0), 0, (*now)(Pelvis, 2));
   return offset;
@@ -205,7 +202,9 @@ std::shared_ptr<const Target> shown_target(const app::TakeState& take) {
 }
 
 Vec3 follow_offset(const Session& session, const PaneContent& pane) {
-  if (shows_rest(session, pane) || shows_as_loaded(session, pane)) return rest_offset(session, pane);
+  if (shows_as_loaded(session, pane)) return offset_as_loaded(session, pane);
+  if (shows_rest(session, pane))
+    return app::rest_offset(session, pane.takes[0] + 1, pane_frame(session, pane));
   return app::follow_offset(session, pane.number, pane_frame(session, pane));
 }
 

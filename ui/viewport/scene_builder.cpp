@@ -170,7 +170,7 @@ PaneScene Builder::build() {
 void Builder::add_unposed() {
   const auto& takes = in_.pictures.takes;
   if (!takes.empty() && takes[0] != nullptr) add_target_surface(0, takes[0], 1);
-  if (!shows_rest(session_, in_.pane)) return;
+  if (!shows_rest(session_, in_.pane) || session_.tool == app::Tool::Face) return;  // it is within the face
   const Joints joints = rest_joints(session_, in_.pane.takes[0]);
   out_.scene.skeletons.push_back(render::skeleton_view(in_.preview.take_joints.value_or(joints)));
 }

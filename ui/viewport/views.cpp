@@ -446,9 +446,10 @@ void Views::describe(const Session& session, const Pane& pane, const Theme& look
     overlay.subtitle = shows_as_loaded(session, pane.content) ? "as loaded \u00b7 binding\u2026"
                        : rest && session.tool == app::Tool::RestPose
                            ? "rest pose \u00b7 turn a bone by its rings"
-                       : rest       ? "T-pose"
-                       : frame >= 0 ? "frame " + std::to_string(frame)
-                                    : "";
+                       : rest && session.tool == app::Tool::Face ? "T-pose \u00b7 drag a mark over the head"
+                       : rest                                    ? "T-pose"
+                       : frame >= 0                              ? "frame " + std::to_string(frame)
+                                                                 : "";
     const std::string method = rest ? "" : pane_method(session, pane.content);
     if (!method.empty()) overlay.subtitle += (overlay.subtitle.empty() ? "" : " \u00b7 ") + method;
     if (!legend_beside_ || pane.made.legend.categories.empty()) overlay.legend = pane.made.legend;
@@ -484,6 +485,8 @@ void Views::describe(const Session& session, const Pane& pane, const Theme& look
         overlay.handles.push_back(
             {*at, std::string("view.crop.") + kBoxSides[face], face == pane.preview.crop_face});
   }
+  for (Overlay::Handle& handle : hand_.face().handles(session, pane.content, view))
+    overlay.handles.push_back(std::move(handle));
   overlay.tags = person_tags(session, pane, frame, look);
   if (under_ != &pane) return;
   overlay.tip_at = pointer_.at;

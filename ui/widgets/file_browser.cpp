@@ -38,8 +38,19 @@ std::string date(int64_t seconds) {
   return {words, std::strftime(words, sizeof words, "%Y-%m-%d %H:%M", &parts)};
 }
 
+/// A folder that is opened as one thing: an entry, or what is shown.
+template <class Of>
+bool is_special(const Of& folder) {
+  return folder.frames > 0 || folder.poses > 0 || folder.is_case;
+}
+
+std::string counted(int count, const std::string& what) {
+  return std::to_string(count) + (count >= 10000 ? "+ " : " ") + what;
+}
+
 Icon icon_of(const FolderEntry& entry) {
   if (entry.frames > 0) return Icon::Points;
+  if (entry.poses > 0) return Icon::Skeleton;
   if (entry.is_case) return Icon::Check;
   if (entry.is_folder) return Icon::Folder;
   if (const FileFormat* const known = format_of_suffix(entry.name, ~0u); known && !known->is_plain_text) {
@@ -54,8 +65,8 @@ Icon icon_of(const FolderEntry& entry) {
 }
 
 std::string about(const FolderEntry& entry) {
-  if (entry.frames > 0)
-    return std::to_string(entry.frames) + (entry.frames >= 10000 ? "+ frames" : " frames");
+  if (entry.frames > 0) return counted(entry.frames, "frames");
+  if (entry.poses > 0) return counted(entry.poses, "poses");
   if (entry.is_case) return "case";
   return entry.is_folder ? "" : file_size(entry.bytes);
 }
@@ -90,7 +101,7 @@ std::vector<std::string> with_poses(std::vector<std::string> suffixes) {
 }  // namespace
 
 FileFilter filter_of(FileKind kind) {
-  static const std::array<FileFilter, 10> kFilters = {{
+  static const std::array<FileFilter, 11> kFilters = {{
       {"Scans, motions and 2D poses", with_poses(format_suffixes(kScanFrame | kScanSequence | kMotion)),
        true},
       {"Targets", with_poses(format_suffixes(kTarget))},
@@ -102,6 +113,7 @@ FileFilter filter_of(FileKind kind) {
       {"All supported files", with_poses(format_suffixes(~0u)), true},
       {"All files", {}, true},
       {"Folders", {}, false, true},
+      {"2D poses", with_poses({}), true},
   }};
   return kFilters[static_cast<size_t>(kind)];
 }
@@ -145,13 +157,13 @@ const FileFilter& FileBrowser::filter() const {
 }
 
 bool FileBrowser::can_choose(const FolderEntry& entry) const {
-  return !entry.is_folder || (!request_.save && filter().folders && (entry.frames > 0 || entry.is_case));
+  return !entry.is_folder || (!request_.save && filter().folders && is_special(entry));
 }
 
 /// Whether the folder that is shown can itself be opened.
 bool FileBrowser::can_choose_folder() const {
   if (request_.save) return false;
-  return filter().any_folder || (filter().folders && (contents_->frames > 0 || contents_->is_case));
+  return filter().any_folder || (filter().folders && is_special(*contents_));
 }
 
 std::string FileBrowser::path_of(const FolderEntry& entry) const {
@@ -398,7 +410,7 @@ void FileBrowser::draw_entry(Ui& ui, int row_number) {
   const float icon = std::round(ui.px(15)), when = width > ui.px(430) ? ui.px(124) : 0, size = ui.px(96),
               look = ui.px(24);
   const float y = at.y + ui.px(4), dates = at.x + width - look - when, sizes = dates - ui.px(8);
-  const bool special = entry.frames > 0 || entry.is_case;
+  const bool special = is_special(entry);
   draw_icon(list, icon_of(entry), {at.x + ui.px(4), at.y + (height - icon) / 2}, icon,
             color(special ? t.accent_hover : t.text_dim));
   list.AddText({at.x + ui.px(26), y}, color(t.text),

@@ -17,13 +17,25 @@ namespace understudy::ui {
 struct FileFilter {
   std::string label;
   std::vector<std::string> suffixes;  ///< lower case, with the dot; none: every file
-  bool folders = false;               ///< a folder of scan frames, or a case, may be chosen
+  bool folders = false;               ///< one of scan frames or of 2D poses, or a case, may be chosen
   bool any_folder = false;            ///< the folder that is shown may be chosen, whatever is in it
   bool passes(const std::string& name) const;
 };
 /// Source: all that moves. BodyMotion: what an SMPL-format body performs. Times: when scans were taken, or
 /// markers. Known: all that opens.
-enum class FileKind { Source, Target, BodyMotion, Times, Document, Study, Answers, Known, Any, Folder };
+enum class FileKind {
+  Source,
+  Target,
+  BodyMotion,
+  Times,
+  Document,
+  Study,
+  Answers,
+  Known,
+  Any,
+  Folder,
+  Poses
+};
 FileFilter filter_of(FileKind kind);
 
 struct Place {

@@ -16,6 +16,7 @@
 #include "retarget/base/text.hpp"
 #include "retarget/formats/file_formats.hpp"
 #include "retarget/formats/scan_frames.hpp"
+#include "retarget/keypoints/keypoint_reader.hpp"
 
 namespace understudy::ui {
 namespace {
@@ -56,6 +57,7 @@ FolderEntry entry_of(const fs::directory_entry& found) {
 class FrameCounts {
  public:
   void add(const std::string& name) {
+    if (file_suffix(name) == ".json") ++jsons_;
     const FileFormat* const format = format_of_suffix(name, kScanFrame);
     if (format == nullptr || format->is_plain_text) return;
     Count& count = counts_[format];
@@ -71,15 +73,20 @@ class FrameCounts {
     }
     return is_alone && most.frames > 1 ? most.frames : 0;
   }
+  /// The JSONs of a folder that opens as 2D poses; 0 where it does not, or is one of scans.
+  int poses(const fs::path& folder) const {
+    return frames() == 0 && jsons_ > 1 && looks_like_keypoints(folder.string()) ? jsons_ : 0;
+  }
 
  private:
   struct Count {
     int files = 0, frames = 0;
   };
   std::map<const FileFormat*, Count> counts_;
+  int jsons_ = 0;
 };
 
-/// Looks into a folder for scan frames and a case.
+/// Looks into a folder for scan frames, 2D poses and a case.
 void look_inside(const fs::path& folder, FolderEntry& entry, const std::atomic<bool>& unwanted) {
   std::error_code error;
   FrameCounts counts;
@@ -90,17 +97,17 @@ void look_inside(const fs::path& folder, FolderEntry& entry, const std::atomic<b
     counts.add(name);
     if (++seen >= kMostFrames) break;
   }
-  entry.frames = counts.frames();
+  entry.frames = counts.frames(), entry.poses = counts.poses(folder);
 }
 
 /// What the folder itself can be opened as.
-void describe_folder(FolderContents& contents) {
+void describe_folder(const fs::path& folder, FolderContents& contents) {
   FrameCounts counts;
   for (const FolderEntry& entry : contents.entries) {
     if (!entry.is_folder) counts.add(entry.name);
     contents.is_case |= entry.name == "case.json";
   }
-  contents.frames = counts.frames();
+  contents.frames = counts.frames(), contents.poses = counts.poses(folder);
 }
 
 }  // namespace
@@ -134,7 +141,7 @@ void FolderListing::Shared::list(const std::string& folder) {
   }
   if (error) contents.problem = reason(folder, error);
   std::sort(contents.entries.begin(), contents.entries.end(), comes_before);
-  describe_folder(contents);
+  describe_folder(folder, contents);
   publish(contents);
   count_frames(folder, contents);
   contents.finished = true;

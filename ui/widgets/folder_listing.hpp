@@ -14,6 +14,7 @@ struct FolderEntry {
   uint64_t bytes = 0;     ///< of a file
   int64_t changed_s = 0;  ///< seconds since 1970; 0: not known
   int frames = 0;  ///< a folder: how many scan frames of one format lie in it (counting stops at 10,000)
+  int poses = 0;   ///< a folder of 2D poses: how many JSON files lie in it; counted where there are no scans
   bool is_case = false;  ///< a folder with a case.json
 };
 
@@ -21,9 +22,9 @@ struct FolderEntry {
 struct FolderContents {
   std::vector<FolderEntry> entries;
   bool finished = false;
-  int frames = 0;        ///< as in FolderEntry, of the folder itself; known when all entries are
-  bool is_case = false;  ///< it has a case.json
-  std::string problem;   ///< why it cannot be listed, one sentence; empty when it can
+  int frames = 0, poses = 0;  ///< as in FolderEntry, of the folder itself; known when all entries are
+  bool is_case = false;       ///< it has a case.json
+  std::string problem;        ///< why it cannot be listed, one sentence; empty when it can
 };
 
 /// Lists one folder in the background. Made and asked from one thread; never blocks it. What was found stays

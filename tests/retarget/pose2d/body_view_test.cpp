@@ -67,6 +67,25 @@ TEST(FaceMarks, WithoutASurfaceAreWhereAPersonHasThem) {
   EXPECT_EQ(of_few.nose, usual.nose);
 }
 
+TEST(FaceMarks, AreWhereTheUserPutsThemOnceEach) {
+  const Person person;
+  const Joints& rest = person.body.joints;
+  std::vector<FaceMove> moves;
+  const FaceMove first{FaceMark::LeftEye, Vec3(0.05f, 1.6f, 0.1f)};
+  put(first, moves), put(mirrored(first, 0.01f), moves);
+  put({FaceMark::LeftEye, Vec3(0.04f, 1.6f, 0.1f)}, moves);
+  ASSERT_EQ(moves.size(), 2u);
+  const FaceMarks moved = moved_marks(person.marks.face, rest, moves);
+  const Vec3 head = rest.row(Head).transpose();
+  EXPECT_LT((head + moved.left_eye - Vec3(0.04f, 1.6f, 0.1f)).norm(), 1e-6f);
+  EXPECT_LT((head + moved.right_eye - Vec3(-0.03f, 1.6f, 0.1f)).norm(), 1e-6f) << "as seen in the mirror";
+  EXPECT_EQ(moved.nose, person.marks.face.nose);
+  EXPECT_EQ(mirrored({FaceMark::Nose, Vec3(0.02f, 1.5f, 0.1f)}, 0.01f).place.x(), 0.01f);
+  for (const FaceMark mark : {FaceMark::Nose, FaceMark::RightEye, FaceMark::LeftEar})
+    EXPECT_EQ(kBodyPointNames[static_cast<size_t>(point_of(mark))],
+              std::string(kFaceMarkNames[static_cast<size_t>(mark)]));
+}
+
 TEST(BodyView, TheLeftOfWhoFacesTheCameraIsOnThePicturesRight) {
   const Person person;
   const FlatPose pose = seen_from(person, 0);
