@@ -12,8 +12,8 @@
 namespace understudy {
 namespace {
 
-constexpr int kFewestPoints = 3;      // fewer are no pose
-constexpr int kOutliersBelieved = 3;  // frames in a row: then the point did jump
+constexpr int kFewestPoints = 3;       // fewer are no pose
+constexpr int kOutliersBelieved = 3;   // frames in a row: then the point did jump
 constexpr double kLongestStep = 3600;  // seconds: longer is as good as that
 
 /// Where a hand or the face starts among all points of a person.
@@ -148,6 +148,10 @@ CleanPose KeypointFilter::push(const FlatPose* seen, double dt, const std::strin
       for (int group = 0; group < ExchangedSides::kGroups; ++group)
         if (mended.believed[static_cast<size_t>(group)] && ExchangedSides::is_in_group(p, group))
           state.points[static_cast<size_t>(p)].reset();
+  } else if (options_.mend_sides) {
+    ExchangedSides::Mended mended = state.sides.mend_first(*seen, noise.size);
+    out.pose = std::move(mended.pose);
+    out.sides_mended = mended.any;
   }
   if (state.has_jumped(out.pose, step, noise)) state.forget_points();
   FlatPoints rows = out.pose.body;

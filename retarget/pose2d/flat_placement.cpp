@@ -78,15 +78,17 @@ Vec2 FlatPlacement::way_of(const FlatPose& source, float ratio, const FlatPose& 
 void FlatPlacement::push(const FlatPose& source, float source_leg, FlatPose& pose) {
   if (is_nobody(source)) return;
   const float ratio = leg_ / std::max(source_leg, 1e-6f);
-  if (!started_) start(source, pose);
+  const bool is_first = !started_;
+  if (is_first) start(source, pose);
   Vec2 way = way_of(source, ratio, pose);
   // Up and down as the feet go, where they are seen.
   const auto low = lowest_of(source, pose), made = lowest_of(pose, source);
   if (low && made) {
     if (!feet_) {
-      feet_ = Line{*low, standing_ ? *made + way.y() : *low};
+      // Feet that come into the picture later find everybody where they are.
+      feet_ = Line{*low, standing_ || !is_first ? *made + way.y() : *low};
       // Some pictures show heels and toes, others ankles alone.
-      if (standing_)
+      if (standing_ && is_first)
         if (const auto stands = lowest_of(*standing_, pose))
           feet_->to = *made + *stands - *lowest_of(pose, *standing_);
     }

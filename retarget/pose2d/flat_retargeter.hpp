@@ -33,12 +33,14 @@ class FlatRetargeter {
 
  private:
   Proportions in_size_of(const Proportions& source) const;
+  void hang_on_lost_hips(const FlatPose& seen, float trunk_ratio, FlatPose& made);
 
   std::unique_ptr<KeypointTransfer> engine_;
   FlatTarget target_;
   FlatPlace place_;
   FlatPlacement placement_;
   FlatPose last_;
+  std::optional<Vec2> trunk_;  // of the source, from the neck to the hips when they were seen, pixels
 };
 
 }  // namespace understudy

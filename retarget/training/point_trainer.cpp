@@ -10,7 +10,7 @@ namespace {
 
 constexpr int kPointBatch = 32, kPointFrames = 45, kPointFigureCases = 60;
 constexpr int64_t kUsualShots = 64000;  // about 4 core-minutes
-constexpr double kJitterWeight = 45;    // points of similarity that one truth's worth of jitter is worth
+constexpr double kJitterWeight = 26;    // points of similarity that one truth's worth of jitter is worth
 constexpr double kCalmEnough = 0.9;     // of the truth's jitter
 constexpr int kColumns = 8;             // of the numbers
 constexpr uint64_t kPointFigureSeed = 20210204;

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "retarget/base/rng.hpp"
+#include "retarget/keypoints/exchanged_sides.hpp"
 #include "tests/retarget/keypoints/support.hpp"
 
 namespace understudy {
@@ -131,6 +132,33 @@ TEST(KeypointFilter, AFirstFrameThatIsWrongIsNotBelievedForEver) {
     if (t > 40) {
       EXPECT_LT(farthest_apart(clean.pose, dancer(t)), 9) << t;
     }
+  }
+}
+
+TEST(KeypointFilter, SidesAreBelievedNoLongerThanTheyWereSeen) {
+  KeypointFilter filter;
+  for (int t = 0; t < 20; ++t) {
+    const FlatPose pose = t < 2 ? sides_exchanged(dancer(t)) : dancer(t);
+    const CleanPose clean = filter.push(&pose, kFrame);
+    if (t > 6) {
+      EXPECT_LT(farthest_apart(clean.pose, dancer(t)), 9) << t;
+    }
+  }
+}
+
+TEST(KeypointFilter, LegsThatAreExchangedInTheFirstFrameArePutBack) {
+  for (const bool legs : {true, false}) {
+    FlatPose pose = dancer(0);
+    const FlatPose other = sides_exchanged(pose);
+    for (int p = 0; p < kBodyPoints; ++p)
+      if (ExchangedSides::is_in_group(p, legs ? 1 : 0)) pose.body.row(p) = other.body.row(p);
+    KeypointFilter filter;
+    const CleanPose clean = filter.push(&pose, kFrame);
+    EXPECT_TRUE(clean.sides_mended);
+    EXPECT_LT(farthest_apart(clean.pose, dancer(0)), 1e-3f) << legs;
+    for (const int p : {body25::RightEye, body25::LeftEye, body25::RightEar, body25::LeftEar}) pose.forget(p);
+    filter.reset();
+    EXPECT_FALSE(filter.push(&pose, kFrame).sides_mended) << "nobody can tell which of the two it is";
   }
 }
 

@@ -45,6 +45,38 @@ TEST(FlatRetargeter, StartsWhereTheTargetStandsAndGoesAsFarAsItsLegsGo) {
   EXPECT_NEAR(feet_of(second) - feet_of(first), 20, 0.5f);
 }
 
+TEST(FlatRetargeter, NothingJumpsWhenTheHipsAreNoLongerSeen) {
+  FlatTarget target = large_one();
+  target.lengths.length[flat_bone::Trunk] *= 1.4f;
+  for (const FlatPlace place : {FlatPlace::Reference, FlatPlace::Source}) {
+    FlatRetargeter retargeter = retargeter_of(target, place);
+    const Proportions source = lengths_of(flat_person());
+    FlatPose cut = flat_person();
+    for (int p = body25::MidHip; p <= body25::LeftAnkle; ++p) cut.forget(p);
+    for (int p = body25::LeftBigToe; p < kBodyPoints; ++p) cut.forget(p);
+    const Vec2 before = retargeter.push(clean(flat_person()), source).at(body25::Nose);
+    const FlatPose lost = retargeter.push(clean(cut), source);
+    EXPECT_FALSE(lost.has(body25::MidHip));
+    EXPECT_LT((lost.at(body25::Nose) - before).norm(), 0.5f);
+    EXPECT_LT((retargeter.push(clean(moved(cut, 10, 0)), source).at(body25::Nose) - before).norm(), 40);
+    EXPECT_LT((retargeter.push(clean(flat_person()), source).at(body25::Nose) - before).norm(), 0.5f);
+  }
+}
+
+TEST(FlatRetargeter, NothingJumpsWhenFeetComeIntoThePicture) {
+  FlatTarget target = large_one();
+  target.lengths.length[flat_bone::RightShin] *= 0.5f;
+  target.lengths.length[flat_bone::LeftShin] *= 0.5f;
+  for (const FlatPlace place : {FlatPlace::Reference, FlatPlace::Source}) {
+    FlatRetargeter retargeter = retargeter_of(target, place);
+    const Proportions source = lengths_of(flat_person());
+    FlatPose cut = flat_person();
+    forget_feet(cut);
+    const Vec2 before = retargeter.push(clean(cut), source).at(body25::Nose);
+    EXPECT_LT((retargeter.push(clean(flat_person()), source).at(body25::Nose) - before).norm(), 0.5f);
+  }
+}
+
 TEST(FlatRetargeter, FeetStandOnOneLineWhateverTheLegsAre) {
   FlatTarget target = large_one();
   target.lengths.length[flat_bone::RightShin] *= 0.5f;
