@@ -8,9 +8,9 @@ namespace understudy {
 
 /// Where a point is and how it moves, seen with errors that depend on the confidence: a Kalman filter of
 /// constant velocity (Bar-Shalom, Li, Kirubarajan, Estimation with Applications to Tracking and Navigation,
-/// 2001, section 6.3.2) and a low-pass after it, whose gains a small network tells in every frame from where to
-/// and how far sightings were off (as KalmanNet, Revach et al., IEEE TSP 2022, learns the gain): those that
-/// are off to one side again and again are movement, off to any side they are jitter.
+/// 2001, section 6.3.2) and a low-pass after it, whose gains a small network tells in every frame from where
+/// to and how far sightings were off (as KalmanNet, Revach et al., IEEE TSP 2022, learns the gain): those
+/// that are off to one side again and again are movement, off to any side they are jitter.
 class PointFilter {
  public:
   /// Error of a sighting, of a person's size, that an outlier must be beyond anyway.

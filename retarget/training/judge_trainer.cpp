@@ -29,11 +29,6 @@ Schedule judge_schedule() {
   return schedule;
 }
 
-nn::StyleJudgeTrainOptions with_end(nn::StyleJudgeTrainOptions options) {
-  if (options.minutes <= 0 && options.samples <= 0) options.samples = kUsualSamples;
-  return options;
-}
-
 /// Right ones among the clips that were asked about.
 class Share {
  public:
@@ -164,7 +159,7 @@ nn::WeightsHeader JudgeTrainer::header() const {
 }  // namespace
 
 int train(const nn::StyleJudgeTrainOptions& options) {
-  return JudgeTrainer(with_end(options)).run();
+  return JudgeTrainer(with_end(options, kUsualSamples)).run();
 }
 
 }  // namespace understudy::training

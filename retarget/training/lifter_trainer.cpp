@@ -7,7 +7,7 @@ namespace understudy::training {
 namespace {
 
 constexpr int kLiftBatch = 64, kLiftFigureCases = 60;
-constexpr int64_t kUsualSequences = 400000;  // about 45 core-minutes
+constexpr int64_t kUsualSequences = 1300000;  // about 22 core-minutes
 
 Schedule lifter_schedule() {
   Schedule schedule;
@@ -16,11 +16,6 @@ Schedule lifter_schedule() {
   schedule.average_decay = 0.995;
   schedule.row_seconds = 180;
   return schedule;
-}
-
-nn::LifterTrainOptions with_lifter_end(nn::LifterTrainOptions options) {
-  if (options.minutes <= 0 && options.samples <= 0) options.samples = kUsualSequences;
-  return options;
 }
 
 class LifterTrainer final : public TrainingRun {
@@ -61,7 +56,7 @@ class LifterTrainer final : public TrainingRun {
 }  // namespace
 
 int train(const nn::LifterTrainOptions& options) {
-  return LifterTrainer(with_lifter_end(options)).run();
+  return LifterTrainer(with_end(options, kUsualSequences)).run();
 }
 
 }  // namespace understudy::training

@@ -9,7 +9,7 @@ namespace understudy::training {
 namespace {
 
 constexpr int kPointBatch = 32, kPointFrames = 45, kPointFigureCases = 60;
-constexpr int64_t kUsualShots = 64000;  // about 4 core-minutes
+constexpr int64_t kUsualShots = 80000;  // about 3 core-minutes
 constexpr double kJitterWeight = 26;    // points of similarity that one truth's worth of jitter is worth
 constexpr double kCalmEnough = 0.9;     // of the truth's jitter
 constexpr int kColumns = 8;             // of the numbers
@@ -22,11 +22,6 @@ Schedule point_schedule() {
   schedule.average_decay = 0.99;
   schedule.row_seconds = 60;
   return schedule;
-}
-
-nn::PointsTrainOptions with_point_end(nn::PointsTrainOptions options) {
-  if (options.minutes <= 0 && options.samples <= 0) options.samples = kUsualShots;
-  return options;
 }
 
 class PointTrainer final : public TrainingRun {
@@ -95,7 +90,7 @@ class PointTrainer final : public TrainingRun {
 }  // namespace
 
 int train(const nn::PointsTrainOptions& options) {
-  PointTrainer trainer(with_point_end(options));
+  PointTrainer trainer(with_end(options, kUsualShots));
   const int status = trainer.run();
   if (status == 0) trainer.write_numbers();
   return status;

@@ -21,11 +21,6 @@ Schedule proportion_schedule() {
   return schedule;
 }
 
-nn::ProportionsTrainOptions with_usual_end(nn::ProportionsTrainOptions options) {
-  if (options.minutes <= 0 && options.samples <= 0) options.samples = kUsualPoses;
-  return options;
-}
-
 class ProportionTrainer final : public TrainingRun {
  public:
   explicit ProportionTrainer(const nn::ProportionsTrainOptions& options)
@@ -70,7 +65,7 @@ class ProportionTrainer final : public TrainingRun {
 }  // namespace
 
 int train(const nn::ProportionsTrainOptions& options) {
-  return ProportionTrainer(with_usual_end(options)).run();
+  return ProportionTrainer(with_end(options, kUsualPoses)).run();
 }
 
 }  // namespace understudy::training

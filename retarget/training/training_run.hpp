@@ -129,6 +129,13 @@ class TrainingRun {
   bool curve_begun_ = false;
 };
 
+/// Where neither minutes nor samples tell an end, after so many samples.
+template <class Options>
+Options with_end(Options options, int64_t samples) {
+  if (options.minutes <= 0 && options.samples <= 0) options.samples = samples;
+  return options;
+}
+
 /// See nn::train; each in the file of its trainer. Samples are scans, for motion sequences, for deformation
 /// points.
 int train(const nn::SkeletonTrainOptions& options);

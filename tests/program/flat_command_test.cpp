@@ -269,6 +269,7 @@ TEST_F(FlatCommand, OptionsThatWouldDoNothingAreRefused) {
                                                  {"--style", "old"},
                                                  {"--height", "1.8"},
                                                  {"--fov", "60"},
+                                                 {"--pitch", "10"},
                                                  {"--hide-limbs"},
                                                  {"--remove-floor"},
                                                  {"--betas", "1"},
@@ -304,7 +305,12 @@ TEST_F(FlatCommand, ATrackIsLiftedOntoACharacterInSpace) {
   EXPECT_EQ(read_file(out("a.bvh")), read_file(out("b.bvh")));
   const Finished tall = lift("c.bvh", {"--stature", "1.2", "--fov", "35"});
   ASSERT_EQ(tall.code, 0) << tall.err;
-  EXPECT_NE(tall.err.find("a person of 1.2 m before a level camera of 35 degrees"), std::string::npos);
+  EXPECT_NE(
+      tall.err.find("a person of 1.2 m before a camera of 35 degrees that looks down as far as they tell"),
+      std::string::npos);
+  const Finished from_above = lift("d.bvh", {"--pitch", "15"});
+  EXPECT_NE(from_above.err.find("that looks down by 15"), std::string::npos) << from_above.err;
+  EXPECT_NE(read_file(out("d.bvh")), read_file(out("a.bvh")));
 }
 
 TEST_F(FlatCommand, TheSuiteLiftingIsMadeAndEvaluated) {
