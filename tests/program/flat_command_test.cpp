@@ -233,7 +233,7 @@ TEST_F(FlatCommand, BadInputIsASentence) {
                        "is 2D poses");
   expect_clean_failure(run_program({"retarget", "--source", target(), "--target", target(), "--out",
                                     out("a.glb"), "--fov", "30"}),
-                       "--fov) are for 2D poses");
+                       "--fov, --pitch) are for 2D poses");
 }
 
 TEST_F(FlatCommand, OfTwoFilesTheOneThatIsWrongIsNamed) {
