@@ -1,6 +1,7 @@
 #include "retarget/training/flat_shots.hpp"
 
 #include <algorithm>
+#include <array>
 #include <limits>
 #include <utility>
 
@@ -19,22 +20,9 @@ constexpr float kTwoMotions = 0.25f;  // share: the trunk does something else th
 constexpr float kHalfRate = 0.25f;    // share of the shots
 constexpr float kNearestShot = 1.5f;  // metres before the eye
 
-bool is_of_legs(int joint) {
-  switch (joint) {
-    case Pelvis:
-    case LeftHip:
-    case RightHip:
-    case LeftKnee:
-    case RightKnee:
-    case LeftAnkle:
-    case RightAnkle:
-    case LeftFoot:
-    case RightFoot:
-      return true;
-    default:
-      return false;
-  }
-}
+/// What the legs' clip moves where another moves the rest.
+constexpr std::array<size_t, 9> kPelvisAndLegs = {Pelvis,    LeftHip,    RightHip, LeftKnee, RightKnee,
+                                                  LeftAnkle, RightAnkle, LeftFoot, RightFoot};
 
 /// Poses of the shot, on its person's legs.
 std::vector<Pose> shot_poses(const FlatShot& shot, float template_leg) {
@@ -43,9 +31,9 @@ std::vector<Pose> shot_poses(const FlatShot& shot, float template_leg) {
   for (int i = 0; i < shot.frames; ++i) {
     Pose pose = shot.clip->motion.poses[static_cast<size_t>(shot.first + i * shot.step)];
     if (shot.upper) {
-      const Pose& upper = shot.upper->motion.poses[static_cast<size_t>(shot.upper_first + i * shot.step)];
-      for (size_t j = 0; j < kJointCount; ++j)
-        if (!is_of_legs(static_cast<int>(j))) pose.local[j] = upper.local[j];
+      const Pose below = pose;
+      pose.local = shot.upper->motion.poses[static_cast<size_t>(shot.upper_first + i * shot.step)].local;
+      for (const size_t j : kPelvisAndLegs) pose.local[j] = below.local[j];
     }
     if (shot.mirrored) pose = mirrored(pose);
     pose.root *= leg;
