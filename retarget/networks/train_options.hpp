@@ -110,6 +110,9 @@ struct PointsTrainOptions : TrainOptions {
   static constexpr const char* kNetwork = "points";
 };
 
+/// Kinds of bodies that paper 3's networks are trained on.
+constexpr std::array<const char*, 4> kMarionetteKinds = {"person", "quadruped", "hand", "arm"};
+
 using AnyTrainOptions =
     std::variant<SkeletonTrainOptions, PartTrainOptions, MotionTrainOptions, DeformationTrainOptions,
                  MotionSpaceTrainOptions, StyleTrainOptions, StyleJudgeTrainOptions, ProportionsTrainOptions,
