@@ -21,6 +21,8 @@
 #include "retarget/discovery/rig_figures.hpp"
 #include "retarget/formats/file_formats.hpp"
 #include "retarget/math/percentile.hpp"
+#include "retarget/networks/networks.hpp"
+#include "retarget/pipeline/method_table.hpp"
 
 namespace understudy::app {
 namespace {
@@ -30,6 +32,7 @@ struct DiscoverOptions {
   std::string out, result, report, preview;
   std::string rig, perform, matches;
   int parts = 0;
+  std::string method = rig_methods().front().name, kind, weights;
 };
 
 void check_outputs(const DiscoverOptions& options) {
@@ -56,9 +59,24 @@ void check_task(const DiscoverOptions& options) {
            "what is performed is either the motion of --rig or that of --source");
 }
 
+void check_method(const DiscoverOptions& options) {
+  const bool is_network = rig_method_named(options.method).weights != nullptr;
+  US_CHECK(is_network || (options.kind.empty() && options.weights.empty()), "--kind and --weights are of --",
+           "method slots");
+  US_CHECK(!is_network || !options.kind.empty(), "--method ", options.method,
+           " knows some kinds of bodies: name the one that moves (--kind)");
+  US_CHECK(!is_network || options.parts == 0, "--method ", options.method,
+           " finds as many bones as its kind has: --parts does not apply");
+}
+
 DiscoveryOptions discovery_options(const DiscoverOptions& options, Progress& progress) {
   DiscoveryOptions how;
   how.parts = options.parts;
+  if (rig_method_named(options.method).weights) {
+    nn::NetworkOptions networks;
+    networks.weights = options.weights;
+    how.keypoints = nn::load_keypoint_finder(nn::weights_folder(networks), options.method, options.kind);
+  }
   how.progress = [&progress](const DiscoveryProgress& at) {
     progress.step(static_cast<int64_t>(100 * at.share));
     return !interrupted();
@@ -250,6 +268,7 @@ int perform_rig(const DiscoverOptions& options) {
 
 int discover_rig(const DiscoverOptions& options) {
   check_task(options);
+  check_method(options);
   check_outputs(options);
   if (!options.perform.empty()) return perform_rig(options);
   return options.rig.empty() ? find_rig(options) : follow_rig(options);
@@ -268,6 +287,12 @@ Action declare_discover(CLI::App& command) {
   command
       .add_option("--parts", options->parts, "at most so many bones (default: as many as its motion shows)")
       ->check(CLI::Range(1, 300));
+  command
+      .add_option("--method", options->method,
+                  help_of(rig_methods()) + " (default: " + rig_methods().front().name + ")")
+      ->check([](const std::string& name) { return failure_of([&] { rig_method_named(name); }); });
+  command.add_option("--kind", options->kind, "of --method slots: person, quadruped, hand or arm");
+  command.add_option("--weights", options->weights, "folder of trained weights");
   command.add_option("--result", options->result, "vertices, joints, tree and weights as .npz");
   command.add_option("--report", options->report, "bones, and how well each frame fits, as JSON");
   command.add_option("--preview", options->preview, "contact sheet as PNG");

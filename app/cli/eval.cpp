@@ -11,6 +11,7 @@
 #include "retarget/base/part_file.hpp"
 #include "retarget/base/text.hpp"
 #include "retarget/metrics/metric_table.hpp"
+#include "retarget/pipeline/method_table.hpp"
 
 namespace understudy::app {
 namespace {
@@ -88,6 +89,9 @@ int eval(EvalOptions options, const std::string& out, const std::string& picture
   if (!pictures.empty()) write_worst_frames(pictures, evaluation.breakdown.worst());
   if (!pictures.empty()) write_flat_pictures(pictures, evaluation.flat_moments);
   if (!pictures.empty() && !evaluation.style.is_null()) write_style_figures(pictures, evaluation.style);
+  for (const auto& [kind, row] : evaluation.keypoints.items())
+    std::printf("%s: sc %.3f of %d keypoints, %.3f of the joints found\n", kind.c_str(),
+                row["sc"].get<double>(), row["keypoints"].get<int>(), row["sc_joints"].get<double>());
   std::printf("mean: %s\n", to_json(evaluation.mean).dump().c_str());
   return evaluation.failed ? 1 : 0;
 }
@@ -143,6 +147,11 @@ Action declare_eval(CLI::App& command) {
   add_tempo_options(command, options->tempo);
   command.add_option("--legs", options->legs_m, "for --tempo body: legs of who performs it, metres (style)")
       ->check(CLI::Range(0.01, 100.0));
+  command
+      .add_option("--method", options->rig_method,
+                  "how rigs are found (creatures). " + help_of(rig_methods()) +
+                      " (default: " + rig_methods().front().name + ")")
+      ->check([](const std::string& name) { return failure_of([&] { rig_method_named(name); }); });
   command.add_flag("--held-out", options->held_out,
                    "finds rigs once more, in even frames alone, and poses them on the odd ones (creatures)");
   command.add_option("--worst", options->worst, "worst frames to list (default: 20)")

@@ -6,6 +6,7 @@
 
 #include "app/cli/flat_evaluation.hpp"
 #include "app/cli/gap_evaluation.hpp"
+#include "app/cli/keypoint_evaluation.hpp"
 #include "app/cli/lift_evaluation.hpp"
 #include "app/cli/style_evaluation.hpp"
 #include "app/run/case_source.hpp"
@@ -20,6 +21,7 @@
 #include "retarget/baselines/node_rig.hpp"
 #include "retarget/formats/mesh_reader.hpp"
 #include "retarget/motion_space/person_fitter.hpp"
+#include "retarget/pipeline/method_table.hpp"
 #include "retarget/scene/scene.hpp"
 #include "retarget/skeleton/skinning.hpp"
 
@@ -194,6 +196,13 @@ void evaluate_deformation(const Truth& truth, const Mesh& target, Deformer& defo
   }
 }
 
+FoundRig find_nodes(const std::vector<Mesh>& scans, double fps) {
+  std::vector<Points> frames;
+  frames.reserve(scans.size());
+  for (const Mesh& scan : scans) frames.push_back(scan.vertices);
+  return {node_rig(frames, fps), 0};
+}
+
 /// What evaluates all cases alike.
 struct Bench {
   const EvalOptions& options;
@@ -201,6 +210,7 @@ struct Bench {
   std::shared_ptr<MotionSpace> space = {};      // made for the first case with gaps
   std::unique_ptr<StyleEvaluation> style = {};  // made for the first case of the suite style
 
+  KeypointEvaluation keypoints = {};
   std::unique_ptr<FlatEvaluation> flat = {};  // made for the first case of 2D poses
 
   FlatEvaluation& flat_poses() {
@@ -210,6 +220,12 @@ struct Bench {
   StyleEvaluation& styles() {
     if (!style) style = std::make_unique<StyleEvaluation>(options);
     return *style;
+  }
+  RigFinder rig_finder_of(const std::string& kind) {
+    if (options.baseline == "nodes") return find_nodes;
+    if (options.find_rig) return options.find_rig;
+    const bool is_network = rig_method_named(options.rig_method).weights != nullptr;
+    return is_network ? keypoints.finder(options, kind) : rig_finder();
   }
   MotionSpace& filling() {
     if (space) return *space;
@@ -351,19 +367,14 @@ void evaluate_gap_case(Bench& bench, const Case& c, CaseResult& result) {
   result.gaps = evaluator.gaps();
 }
 
-FoundRig find_nodes(const std::vector<Mesh>& scans, double fps) {
-  std::vector<Points> frames;
-  frames.reserve(scans.size());
-  for (const Mesh& scan : scans) frames.push_back(scan.vertices);
-  return {node_rig(frames, fps), 0};
-}
-
 /// A case of a body of any kind: its rig is found in all of its scans together.
-void evaluate_rig_case(const EvalOptions& options, const Case& c, const RigTruth& truth, CaseResult& result,
+void evaluate_rig_case(Bench& bench, const Case& c, const RigTruth& truth, CaseResult& result,
                        Breakdown& breakdown) {
+  const EvalOptions& options = bench.options;
   US_CHECK(options.baseline.empty() || options.baseline == "nodes", c.name, ": --baseline ", options.baseline,
            " is of people, and this is any body");
-  const RigFinder find = options.baseline == "nodes" ? RigFinder(find_nodes) : options.find_rig;
+  const std::string kind = c.tags.size() > 1 ? c.tags[1] : c.name;
+  const RigFinder find = bench.rig_finder_of(kind);
   const RigEvaluation evaluation = c.performed_truth.empty()
                                        ? evaluate_rig(c, truth, find, {options.edits, options.held_out})
                                        : evaluate_pair(c, find, options.edits);
@@ -372,7 +383,8 @@ void evaluate_rig_case(const EvalOptions& options, const Case& c, const RigTruth
   for (int64_t t = 0; t < evaluation.frames; ++t) result.latency.add(times);
   result.frames = evaluation.frames;
   result.metrics = evaluation.metrics;
-  breakdown.add_kind(c.tags.size() > 1 ? c.tags[1] : c.name, result.metrics);
+  breakdown.add_kind(kind, result.metrics);
+  bench.keypoints.add(kind, truth);
 }
 
 void evaluate_case(Bench& bench, const std::string& folder, const Case& c, CaseResult& result,
@@ -391,7 +403,7 @@ void evaluate_case(Bench& bench, const std::string& folder, const Case& c, CaseR
   if (c.gaps) return evaluate_gap_case(bench, c, result);
   std::optional<Truth> truth;
   if (!c.truth.empty()) truth = read_truth(c.truth);
-  if (truth && truth->rig) return evaluate_rig_case(options, c, *truth->rig, result, breakdown);
+  if (truth && truth->rig) return evaluate_rig_case(bench, c, *truth->rig, result, breakdown);
   US_CHECK(options.baseline != "nodes", c.name, ": --baseline nodes is of bodies whose rig is to be found");
   US_CHECK(options.oracle.empty() || truth, c.name, ": --oracle needs a ground truth");
   std::optional<Mesh> mesh;  // with the file's own vertices
@@ -496,6 +508,7 @@ Evaluation evaluate(const EvalOptions& options, const std::function<void(const C
   set_gap_means(evaluation);
   if (bench.flat)
     evaluation.flat_engine = flat_engine(options.how), evaluation.flat_moments = bench.flat->moments();
+  evaluation.keypoints = bench.keypoints.summary();
   if (bench.style) evaluation.style = bench.style->summary();
   return evaluation;
 }
@@ -530,6 +543,8 @@ Json report_of(const EvalOptions& options, const Evaluation& evaluation) {
   report["ms"] = to_json(evaluation.latency, 0.5);
   report["ms_p95"] = to_json(evaluation.latency, 0.95);
   report["breakdown"] = evaluation.breakdown.json();
+  if (!evaluation.keypoints.is_null()) report["keypoints"] = evaluation.keypoints;
+  if (options.rig_method != EvalOptions().rig_method) report["rig_method"] = options.rig_method;
   if (!evaluation.style.is_null()) report["style_figures"] = evaluation.style;
   return report;
 }

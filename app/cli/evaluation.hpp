@@ -23,9 +23,10 @@ struct EvalOptions {
   /// "fit": a body is fitted to each scan in place of the extractor; "complete": one to all known frames of a
   /// case at once; "nodes": of bodies of any kind, points of the first frame are followed; empty: none
   std::string baseline;
-  RigFinder find_rig = rig_finder();  ///< of bodies of any kind, where no baseline is asked for
-  std::optional<int> file_shapes;     ///< the exported file is evaluated, too, with so many morph targets
-  std::string body;                   ///< SMPL-format, of the baseline "fit"
+  std::string rig_method = "parts";  ///< one of rig_methods(): of bodies of any kind, without a baseline
+  RigFinder find_rig = {};           ///< in its place; empty: the method's
+  std::optional<int> file_shapes;    ///< the exported file is evaluated, too, with so many morph targets
+  std::string body;                  ///< SMPL-format, of the baseline "fit"
   std::string fill = kDefaultMotionSpace;  ///< of cases with gaps: one of motion_spaces()
   std::string data;                        ///< a data folder for those that need clips
   bool held_out = false;  ///< of bodies of any kind: figures of frames that the rig was not found in, too
@@ -52,6 +53,7 @@ struct CaseResult {
 struct Evaluation {
   std::vector<CaseResult> results;
   Breakdown breakdown;
+  Json keypoints;                        ///< KeypointEvaluation::summary()
   Json style;                            ///< StyleEvaluation::summary()
   std::string flat_engine;               ///< where cases are 2D poses
   std::vector<FlatMoment> flat_moments;  ///< FlatEvaluation::moments()

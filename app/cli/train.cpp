@@ -61,6 +61,15 @@ void add_own(CLI::App& command, nn::PartTrainOptions& options) {
 void add_own(CLI::App&, nn::DeformationTrainOptions&) {}
 void add_own(CLI::App&, nn::ProportionsTrainOptions&) {}
 void add_own(CLI::App&, nn::PointsTrainOptions&) {}
+/// Whose keypoints or motions.
+void add_kind(CLI::App& command, std::string& kind) {
+  command.add_option("--kind", kind, "person, quadruped, hand or arm (default: person)")
+      ->check(
+          CLI::IsMember(std::vector<std::string>(nn::kMarionetteKinds.begin(), nn::kMarionetteKinds.end())));
+}
+void add_own(CLI::App& command, nn::MarionetteSlotsTrainOptions& options) {
+  add_kind(command, options.kind);
+}
 void add_own(CLI::App& command, nn::Pose2dTrainOptions& options) {
   command
       .add_option("--links", options.links,
@@ -235,6 +244,8 @@ Action declare_train(CLI::App& command) {
   add_network<nn::Pose2dTrainOptions>(command, "2D poses performed by others, paper 5's network", chosen);
   add_network<nn::LifterTrainOptions>(command, "skeletons in space, from 2D poses", chosen);
   add_network<nn::PointsTrainOptions>(command, "the filter of 2D points", chosen);
+  add_network<nn::MarionetteSlotsTrainOptions>(
+      command, "keypoints and tree of a kind of body, from its scans alone", chosen);
   return [chosen] { return (*chosen)(); };
 }
 

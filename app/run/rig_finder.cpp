@@ -59,13 +59,15 @@ ScanSequence scan_sequence(std::shared_ptr<Source> source, const std::string& na
   return scans;
 }
 
-RigFinder rig_finder() {
-  return [](const std::vector<Mesh>& frames, double fps) {
+RigFinder rig_finder(std::shared_ptr<KeypointFinder> keypoints) {
+  return [keypoints = std::move(keypoints)](const std::vector<Mesh>& frames, double fps) {
     ScanSequence scans;
     scans.count = ssize(frames);
     scans.fps = fps;
     scans.scan = [&frames](int frame) { return frames[static_cast<size_t>(frame)]; };
-    DiscoveredRig rig = discover(scans);
+    DiscoveryOptions options;
+    options.keypoints = keypoints;
+    DiscoveredRig rig = discover(scans, options);
     return FoundRig{std::move(rig.found), rig.rest_frame};
   };
 }

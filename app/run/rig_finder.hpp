@@ -20,8 +20,8 @@ SourceOptions as_it_is(SourceOptions options);
 ScanSequence scan_sequence(std::shared_ptr<Source> source, const std::string& name,
                            const ScanEdits& edits = {});
 
-/// discover() as an evaluation calls it.
-RigFinder rig_finder();
+/// discover() as an evaluation calls it. keypoints: see DiscoveryOptions.
+RigFinder rig_finder(std::shared_ptr<KeypointFinder> keypoints = nullptr);
 
 /// vertices [T, V, 3], joints [T, J, 3], parents [J], weights [V, J], faces [F, 3], kinds [J] (JointKind's
 /// numbers), axes [J, 3] and rest_joints [J, 3] at rest, off_m [T] (-1: not known), doubted [T], fps.

@@ -12,6 +12,7 @@
 #include "retarget/base/index.hpp"
 #include "retarget/base/log.hpp"
 #include "retarget/discovery/inner_joints.hpp"
+#include "retarget/discovery/keypoint_start.hpp"
 #include "retarget/discovery/part_tree.hpp"
 #include "retarget/discovery/rest_surface.hpp"
 #include "retarget/discovery/rig_figures.hpp"
@@ -79,6 +80,7 @@ class Discovery {
   TrackingProgress tracking_progress(float from, float to);
   void read_key_frames();
   int most_open() const;
+  void track();
   void find_bones();
   void show_parts() const;
   void bind_points();
@@ -154,10 +156,27 @@ void Discovery::bind_points() {
   surface_ = {graph.points, graph.normals, SkinWeights::from(weights)};
 }
 
+void Discovery::track() {
+  const TrackingProgress progress = tracking_progress(kReadingEnds, kTrackingEnds);
+  if (!options_.keypoints) {
+    tracks_ = track_surface(frames_, most_open(), kNodes, progress);
+    return;
+  }
+  KeypointStart start = start_from_keypoints(frames_, most_open(), kNodes, *options_.keypoints);
+  tracks_ = std::move(start.tracks);
+  parts_ = std::move(start.parts);
+  track_again(frames_, tracks_, progress);
+}
+
 void Discovery::find_bones() {
-  parts_ = find_rigid_parts(frames_, tracks_, options_.parts);
-  tree_ = find_part_tree(tracks_, parts_);
-  add_turntables(tracks_, parts_, tree_, options_.parts);
+  if (options_.keypoints) {
+    refit(tracks_, parts_);
+    tree_ = part_tree_of_kind(tracks_, parts_, options_.keypoints->parents());
+  } else {
+    parts_ = find_rigid_parts(frames_, tracks_, options_.parts);
+    tree_ = find_part_tree(tracks_, parts_);
+    add_turntables(tracks_, parts_, tree_, options_.parts);
+  }
   bind_points();
   bones_.assign(frames_.size(), BoneMotions(tree_.part_of_bone.size()));
   for (size_t t = 0; t < frames_.size(); ++t)
@@ -303,7 +322,7 @@ DiscoveredRig Discovery::finished() {
 DiscoveredRig Discovery::run() {
   read_key_frames();
   warn_of_more_than_one(frames_, scans_.name);
-  tracks_ = track_surface(frames_, most_open(), kNodes, tracking_progress(kReadingEnds, kTrackingEnds));
+  track();
   for (int round = 0; round < kRounds; ++round) {
     rest_what_may(frames_, tracks_);
     find_bones();
@@ -315,7 +334,7 @@ DiscoveredRig Discovery::run() {
   report("Bones", kTrackedAgain);
   fit_all(kFirmJoints);
   find_joints_again();
-  drop_still_bones();
+  if (!options_.keypoints) drop_still_bones();
   draw_joints_inside(frames_[static_cast<size_t>(tracks_.rest_frame)], tracks_.graph, tree_.rig);
   report("Bones", (kTrackedAgain + kBonesEnd) / 2);
   fit_all(kRigidJoints);

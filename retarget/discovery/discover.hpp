@@ -2,9 +2,11 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
+#include "retarget/pipeline/keypoint_finder.hpp"
 #include "retarget/rig/rig.hpp"
 
 namespace understudy {
@@ -33,6 +35,9 @@ struct PartsSoFar {
 
 struct DiscoveryOptions {
   int parts = 0;  ///< at most; 0: as many as the motion shows
+  /// Null: bones are found in the motion alone (`parts`). Else the bones are this network's keypoints, as
+  /// many and as joined in every sequence of its kind, and `parts` does not count.
+  std::shared_ptr<KeypointFinder> keypoints = nullptr;
   /// Called each time bones have been looked for, on one thread.
   std::function<void(PartsSoFar)> parts_found = {};
   /// Called from several threads, one at a time; false ends the work with the best found so far.

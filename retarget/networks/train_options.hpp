@@ -113,10 +113,16 @@ struct PointsTrainOptions : TrainOptions {
 /// Kinds of bodies that paper 3's networks are trained on.
 constexpr std::array<const char*, 4> kMarionetteKinds = {"person", "quadruped", "hand", "arm"};
 
+/// The network of slots: keypoints and tree of a kind, from scans alone.
+struct MarionetteSlotsTrainOptions : TrainOptions {
+  static constexpr const char* kNetwork = "marionette-slots";
+  std::string kind = "person";  ///< of kMarionetteKinds
+};
+
 using AnyTrainOptions =
     std::variant<SkeletonTrainOptions, PartTrainOptions, MotionTrainOptions, DeformationTrainOptions,
                  MotionSpaceTrainOptions, StyleTrainOptions, StyleJudgeTrainOptions, ProportionsTrainOptions,
-                 Pose2dTrainOptions, LifterTrainOptions, PointsTrainOptions>;
+                 Pose2dTrainOptions, LifterTrainOptions, PointsTrainOptions, MarionetteSlotsTrainOptions>;
 
 /// Trains until the minutes or samples are used up, going on from the checkpoint where there is one. 0 when
 /// it came to the end, 1 when it was cancelled. Throws Error.

@@ -14,6 +14,7 @@ struct FoundKeypoints {
   Points places{0, 3};           ///< [K, 3]
   std::vector<float> intensity;  ///< [K] 0 .. 1: how much of the body it stands for (paper 3, alpha)
   std::vector<Mat3> turns;       ///< [K] against one pose common to all scans; empty: not told
+  std::vector<int> owner;        ///< [V] whose each vertex of the scan is; empty: not told
 };
 /// Keypoints fainter than this are not drawn, not scored and carry no skin (paper 3, section 5).
 constexpr float kLeastIntensity = 0.2f;

@@ -56,10 +56,15 @@ KindData::KindData(const std::string& kind, const std::string& folder, Split spl
   }
   creature_ = static_cast<int>(std::find(kCreatureNames.begin(), kCreatureNames.end(), kind) -
                                kCreatureNames.begin());
-  const uint64_t first = split == Split::Train ? 0 : kFirstDevCreature,
-                 count = split == Split::Train ? kTrainCreatures : kDevCreatures;
-  for (uint64_t seed = first; seed < first + count; ++seed)
-    rigs_.push_back(make_creature(static_cast<CreatureKind>(creature_), seed));
+  first_seed_ = split == Split::Train ? 0 : kFirstDevCreature;
+  rigs_.resize(split == Split::Train ? kTrainCreatures : kDevCreatures);
+}
+
+const Rig& KindData::creature(int number) const {
+  std::optional<Rig>& rig = rigs_[static_cast<size_t>(number)];
+  if (!rig)
+    rig = make_creature(static_cast<CreatureKind>(creature_), first_seed_ + static_cast<uint64_t>(number));
+  return *rig;
 }
 
 RiggedMotion KindData::draw(int frames, double fps, Rng& rng) const {
@@ -70,7 +75,7 @@ RiggedMotion KindData::draw(int frames, double fps, Rng& rng) const {
 
 RiggedMotion KindData::draw_creature(int frames, double fps, Rng& rng) const {
   const auto kind = static_cast<CreatureKind>(creature_);
-  const Rig& rig = rigs_[static_cast<size_t>(rng.below(static_cast<int>(rigs_.size())))];
+  const Rig& rig = creature(rng.below(static_cast<int>(rigs_.size())));
   const int motion = rng.below(static_cast<int>(creature_motions(kind).size()));
   const int skipped = rng.below(static_cast<int>(2 * fps));  // they all begin alike
   RigMotion whole = creature_motion(kind, rig, motion, skipped + frames, fps, rng.next());

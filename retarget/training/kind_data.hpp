@@ -12,7 +12,8 @@
 
 namespace understudy::training {
 
-/// Creatures are made by code, people come from the data folder. Every body of a kind has the same bones.
+/// Creatures are made by code, people come from the data folder. Every body of a kind has the same bones. Of
+/// one thread.
 class KindData {
  public:
   /// kind: one of nn::kMarionetteKinds. Throws Error for another, and naming what of the folder cannot be
@@ -27,8 +28,11 @@ class KindData {
   RiggedMotion draw_creature(int frames, double fps, Rng& rng) const;
   RiggedMotion draw_person(int frames, double fps, Rng& rng) const;
 
-  int creature_ = -1;      // a CreatureKind; -1: people
-  std::vector<Rig> rigs_;  // creatures
+  const Rig& creature(int number) const;
+
+  int creature_ = -1;  // a CreatureKind; -1: people
+  uint64_t first_seed_ = 0;
+  mutable std::vector<std::optional<Rig>> rigs_;  // creatures, each made when it is first asked for
   std::optional<TrainingData> people_;
   std::vector<ClipRun> runs_;
   std::optional<ClipPoses> poses_;

@@ -119,6 +119,16 @@ TEST_F(DiscoverCommand, SaysWhatItCannotDo) {
   expect_clean_failure(run_program({"discover", "--source", scans()}), "nothing is to be written");
   expect_clean_failure(run_program({"discover", "--source", scans(), "--out", out("rig.obj")}),
                        ".glb, .gltf or .bvh");
+  const auto by = [&](std::vector<std::string> words) {
+    words.insert(words.begin(), {"discover", "--source", scans(), "--out", out("r.glb")});
+    return run_program(words);
+  };
+  expect_clean_failure(by({"--method", "slots"}), "--kind");
+  expect_clean_failure(by({"--kind", "hand"}), "--kind and --weights are of --method slots");
+  expect_clean_failure(by({"--method", "slots", "--kind", "teapot"}), "not 'teapot'");
+  expect_clean_failure(by({"--method", "slots", "--kind", "hand", "--parts", "4"}), "--parts does not apply");
+  expect_clean_failure(by({"--method", "slots", "--kind", "hand", "--weights", scratch.path("none")}),
+                       "none/marionette_slots_hand.weights");
   expect_clean_failure(run_program({"discover", "--source", scratch.path("absent"), "--out", out("rig.glb")}),
                        "absent");
   const Joints rest = made_joints({});

@@ -11,6 +11,7 @@
 #include "retarget/skeleton/curve_doubt.hpp"
 #include "retarget/style/load_style.hpp"
 #include "tests/retarget/pipeline/fixtures.hpp"
+#include "tests/session/crash_trace.hpp"
 #include "tests/support/flat_track.hpp"
 
 namespace understudy::app {
@@ -115,6 +116,7 @@ bool same_poses(const Motion& a, const Motion& b) {
 }
 
 void StudioTest::SetUp() {
+  tell_where_it_crashes();
   folder_ = fs::temp_directory_path() / ("understudy_studio_" + std::to_string(::getpid()) + "_" +
                                          ::testing::UnitTest::GetInstance()->current_test_info()->name());
   fs::remove_all(folder_);

@@ -1,0 +1,19 @@
+// What a network of the kind sees in scans, as a start for finding a rig: a surface that follows keypoints,
+// and the part of each.
+#pragma once
+
+#include "retarget/discovery/part_tree.hpp"
+#include "retarget/pipeline/keypoint_finder.hpp"
+
+namespace understudy {
+
+struct KeypointStart {
+  SurfaceTracks tracks;
+  RigidParts parts;  ///< one a keypoint, in their order
+};
+/// Each point of the rest frame goes with the keypoint that owns it; keypoints that own nothing there get the
+/// nearest point. name: of the scans, for messages. Throws Error as finder.find() does.
+KeypointStart start_from_keypoints(const std::vector<ThinnedFrame>& frames, int rest_frame, int nodes,
+                                   KeypointFinder& finder);
+
+}  // namespace understudy

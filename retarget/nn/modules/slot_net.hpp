@@ -1,0 +1,95 @@
+// The network that finds a kind's keypoints in one scan: slots that share out the points of the body, each a
+// place and a turn. Learnt without labels.
+#pragma once
+
+#include <torch/torch.h>
+
+#include "retarget/geometry/mesh.hpp"
+
+namespace understudy::nn {
+
+constexpr int kSlotPoints = 512;      ///< of a scan that the network sees
+constexpr int kSlotPatches = 64;      ///< patch centres, far apart
+constexpr int kSlotPatchPoints = 16;  ///< nearest points of each centre
+constexpr int kSlotNeighbours = 4;    ///< patch centres that a point asks whose it is
+
+/// B scans, normalised: less the mean of their points, over one scale a sequence.
+struct SlotInput {
+  torch::Tensor points;      ///< [B, N, 3]
+  torch::Tensor centres;     ///< [B, M, 3]
+  torch::Tensor offsets;     ///< [B, M, P, 3] the patches' points less their centres
+  torch::Tensor neighbours;  ///< [B, N, 4] int64: each point's nearest centres
+  torch::Tensor nearness;    ///< [B, N, 4] how much each of them counts; sums to 1
+};
+/// Version of the network's form.
+constexpr int kSlotVersion = 1;
+/// Room for B scans.
+SlotInput empty_slot_input(int64_t scans);
+/// Cuts kSlotPoints normalised points into row `row`.
+void put_slot_points(const Points& points, int64_t row, SlotInput& input);
+
+/// In the normalised frame.
+struct SlotOutput {
+  torch::Tensor heading;  ///< [B, 2] where the body faces, x and z, unit length
+  torch::Tensor places;   ///< [B, K, 3]
+  torch::Tensor turns;    ///< [B, K, 3, 3] against a pose common to all bodies
+  torch::Tensor shares;   ///< [B, N, K] of the points; sum to 1
+};
+
+/// Paper 3, eq. 12: of each of N matrices the numbers [N, K, K - 1], without the diagonal, made to sum to 1 a row, with
+/// a diagonal of 0: A_n, [N, K, K].
+torch::Tensor affinities_of(const torch::Tensor& free);
+
+/// Patches with what is about them, by a transformer whose tokens like near ones.
+class SlotEncoderImpl : public torch::nn::Module {
+ public:
+  SlotEncoderImpl(int64_t layers, int64_t width);
+  /// centres [B, M, 3], offsets [B, M, P, 3] -> [B, M, width]
+  torch::Tensor forward(const torch::Tensor& centres, const torch::Tensor& offsets);
+
+ private:
+  torch::nn::Sequential patch_mlp{nullptr}, position_mlp{nullptr};
+  torch::nn::Linear patch_out{nullptr};
+  torch::nn::ModuleList layers_{nullptr};
+  torch::nn::LayerNorm norm{nullptr};
+};
+TORCH_MODULE(SlotEncoder);
+
+/// Where a body faces. What it looks at does not change when the body turns about the vertical, and what it
+/// adds up are directions that turn with it: so its answer turns exactly as the body does.
+class HeadingNetImpl : public torch::nn::Module {
+ public:
+  HeadingNetImpl();
+  /// centres [B, M, 3], offsets [B, M, P, 3] -> [B, 2] x and z, unit length
+  torch::Tensor forward(const torch::Tensor& centres, const torch::Tensor& offsets);
+
+ private:
+  torch::nn::Sequential patch_mlp{nullptr}, place_mlp{nullptr};
+  torch::nn::Linear patch_out{nullptr}, weigh{nullptr};
+  torch::nn::ModuleList layers_{nullptr};
+  torch::nn::LayerNorm norm{nullptr};
+};
+TORCH_MODULE(HeadingNet);
+
+/// First where the body faces, then all else as if it faced +z.
+class SlotNetImpl : public torch::nn::Module {
+ public:
+  explicit SlotNetImpl(int64_t slots);
+  SlotOutput forward(const SlotInput& input);
+  int64_t slots() const { return slots_; }
+  /// Which slots hang together: [2, K, K - 1] free numbers, see affinities_of().
+  torch::Tensor free_affinities() const { return kAffinityPace * affinity; }
+
+ private:
+  static constexpr double kAffinityPace = 10;  // they are learnt so much faster than weights
+
+  int64_t slots_;
+  HeadingNet heading{nullptr};
+  SlotEncoder encoder{nullptr};
+  torch::nn::Sequential slot_head{nullptr};
+  torch::nn::Linear choice_head{nullptr}, share_head{nullptr};
+  torch::Tensor slot_embedding, affinity;
+};
+TORCH_MODULE(SlotNet);
+
+}  // namespace understudy::nn

@@ -1,0 +1,101 @@
+// A rig is found from keypoints that a network of the kind is said to see.
+#include "retarget/discovery/keypoint_start.hpp"
+
+#include <gtest/gtest.h>
+
+#include "retarget/base/error.hpp"
+#include "tests/retarget/discovery/bending_arm.hpp"
+
+namespace understudy {
+namespace {
+
+/// Sees the middles of both halves of the arm and its tip, a third of a radius off. The upper arm, which is
+/// thick from x = 0 to 0.5, stays; how far the rest has turned follows from where its points are.
+class ArmFinder final : public KeypointFinder {
+ public:
+  explicit ArmFinder(bool tells_turns) : tells_turns_(tells_turns) {}
+  std::vector<FoundKeypoints> find(const std::vector<Mesh>& scans) override {
+    std::vector<FoundKeypoints> all;
+    for (const Mesh& scan : scans) {
+      Vec3 far = Vec3::Zero();  // the mean of what is a forearm's length from the shoulder and more
+      int count = 0;
+      for (const auto& p : scan.vertices.rowwise())
+        if ((p.transpose() - kElbow).norm() > 0.3f && p.x() > 0.3f) far += p.transpose(), ++count;
+      const Vec3 way = (far / static_cast<float>(count) - kElbow).normalized();
+      const Mat3 turn = rotation_from_axis_angle({0, 0, std::atan2(way.y(), way.x())});
+      FoundKeypoints found;
+      found.places.resize(3, 3);
+      found.places << 0.25f, 0.02f, 0, (kElbow + 0.15f * way + 0.02f * Vec3::UnitZ()).transpose(),
+          (kElbow + 0.4f * way).transpose();
+      found.intensity.assign(3, 1);
+      if (tells_turns_) found.turns = {Mat3::Identity(), turn, turn};
+      if (tells_turns_)
+        for (const auto& p : scan.vertices.rowwise()) {
+          const float along = (p.transpose() - kElbow).dot(way);
+          found.owner.push_back(along < 0 ? 0 : along < 0.28f ? 1 : 2);
+        }
+      all.push_back(found);
+    }
+    return all;
+  }
+  const std::vector<int>& parents() const override { return parents_; }
+  const std::string& kind() const override { return kind_; }
+  std::string name() const override { return "told"; }
+
+ private:
+  bool tells_turns_;
+  std::vector<int> parents_ = {-1, 0, 1};
+  std::string kind_ = "arm";
+};
+
+class KeypointStarts : public ::testing::TestWithParam<bool> {};
+
+TEST_P(KeypointStarts, TheRigHasTheKindsBonesEvenThoseThatDoNotMove) {
+  DiscoveryOptions options;
+  options.keypoints = std::make_shared<ArmFinder>(GetParam());
+  const DiscoveredRig found = discover(bending_arm(), options);
+  const Rig& rig = found.found.rig;
+  ASSERT_EQ(rig.count(), 3);
+  EXPECT_EQ(rig.joints[0].name, "keypoint 1");
+  EXPECT_EQ(rig.joints[2].name, "keypoint 3");
+  EXPECT_EQ(rig.joints[1].parent, 0);
+  EXPECT_EQ(rig.joints[2].parent, 1);
+  EXPECT_LT((rig.joints[1].rest - kElbow).norm(), GetParam() ? 0.03f : 0.08f);
+  EXPECT_EQ(rig.joints[2].kind, JointKind::Ball) << "free, though it does not turn here";
+  for (const float off : found.off_m) EXPECT_LT(off, 0.02f);
+}
+INSTANTIATE_TEST_SUITE_P(WithAndWithoutTurns, KeypointStarts, ::testing::Bool());
+
+TEST(KeypointStart, EveryKeypointOwnsAPoint) {
+  class Crowd final : public KeypointFinder {
+   public:
+    std::vector<FoundKeypoints> find(const std::vector<Mesh>& scans) override {
+      FoundKeypoints one;
+      one.places = Points::Zero(40, 3);  // all in one place, which the first one owns alone
+      one.intensity.assign(40, 1);
+      one.turns.assign(40, Mat3::Identity());
+      std::vector<FoundKeypoints> all(scans.size(), one);
+      for (size_t t = 0; t < all.size(); ++t)
+        all[t].owner.assign(static_cast<size_t>(scans[t].vertices.rows()), 0);
+      return all;
+    }
+    const std::vector<int>& parents() const override { return parents_; }
+    const std::string& kind() const override { return kind_; }
+    std::string name() const override { return "crowd"; }
+
+   private:
+    std::vector<int> parents_;
+    std::string kind_;
+  } crowd;
+  std::vector<ThinnedFrame> frames;
+  for (int t = 0; t < 3; ++t) frames.push_back(thinned(sparse_arm(0.2f, t), 200, 800, 1));
+  const KeypointStart start = start_from_keypoints(frames, 1, 50, crowd);
+  ASSERT_EQ(start.parts.count(), 40);
+  for (int k = 0; k < 40; ++k)
+    EXPECT_EQ(std::count(start.parts.of_point.begin(), start.parts.of_point.end(), k) > 0, true) << k;
+  EXPECT_EQ(start.tracks.rest_frame, 1);
+  EXPECT_EQ(start.tracks.motions.size(), 3u);
+}
+
+}  // namespace
+}  // namespace understudy
