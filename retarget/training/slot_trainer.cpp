@@ -12,6 +12,7 @@ namespace {
 constexpr int kSlotBatch = 8, kSlotFigureClips = 40, kSlotFigureFrames = 8;
 constexpr int kWarpedPoints = 256;
 constexpr double kSlowestWalk = 0.5;  // of the body's size, a second: slower, it may go anywhere
+constexpr double kTreeBegins = 0.3;   // share of the training: keypoints find their places first
 constexpr uint64_t kSlotFigureSeed = 77;
 
 Schedule slot_schedule() {
@@ -77,7 +78,7 @@ class SlotTrainer final : public TrainingRun {
     const auto there = few.index_select(0, t);
     LossSum loss;
     loss.add("warp", nearest_distance(moved, there) + nearest_distance(there, moved));
-    loss.add("vol", volume_loss(points, all.places), 0.5);
+    loss.add("vol", volume_loss(points, all.places));
     loss.add("inside", nearest_distance(all.places, points), 0.1);
     const auto first = index.select(1, 0), turned = torch::arange(count, torch::kInt64) + count * kSlotWindow;
     const auto wanted = torch::matmul(all.places.index_select(0, first), batch.turned.transpose(1, 2));
@@ -86,10 +87,12 @@ class SlotTrainer final : public TrainingRun {
         torch::matmul(batch.turned.unsqueeze(1), all.turns.index_select(0, first)), batch.side.unsqueeze(1));
     loss.add("turns", (wanted_turns - all.turns.index_select(0, turned)).square().mean(), 0.5);
     add_heading(batch, all.heading, count, loss);
-    const auto affinities = nn::affinities_of(net_->free_affinities());
-    loss.add("joint", joint_loss(affinities[0], before, after), 0.15);
-    add_tree(affinities, all.places.narrow(0, 0, count * kSlotWindow).view({count, kSlotWindow, -1, 3}),
-             loss);
+    if (done_share() > kTreeBegins) {
+      const auto affinities = nn::affinities_of(net_->free_affinities());
+      loss.add("joint", joint_loss(affinities[0], before, after), 0.1);
+      const auto frames = all.places.narrow(0, 0, count * kSlotWindow);
+      add_tree(affinities, frames.view({count, kSlotWindow, -1, 3}), loss);
+    }
     return loss;
   }
 
@@ -98,7 +101,7 @@ class SlotTrainer final : public TrainingRun {
     const auto affinity = joined_affinity(affinities);
     const auto intensity = torch::ones({places.size(0), places.size(1), places.size(2)});
     loss.add("traj", trajectory_loss(places, affinity, intensity));
-    loss.add("local", local_loss(places, affinity, intensity), 1);
+    loss.add("local", local_loss(places, affinity, intensity), 4);
     loss.add("time", time_loss(places, affinity, intensity));
     loss.add("complex", complexity_loss(affinities), 0.01);
   }

@@ -13,7 +13,7 @@ namespace {
 constexpr int64_t kSlotWidth = 96, kSlotHeads = 4, kSlotLayers = 3;
 constexpr int64_t kHeadingWidth = 64, kHeadingLayers = 2;
 constexpr double kAxis = 0.1;        // normalised: nearer the middle there is no way away from it
-constexpr double kSlotReach = 0.25;  // normalised: a point is rarely of a slot much further away
+constexpr double kSlotReach = 0.12;  // normalised: points are shared by slots about as near
 
 /// Numbers of the `count` nearest of `among` to a place, nearest first.
 std::vector<int> nearest_rows(const Points& among, const Eigen::RowVector3f& to, int count) {
@@ -56,9 +56,7 @@ torch::Tensor affinities_of(const torch::Tensor& free) {
 
 SlotInput empty_slot_input(int64_t scans) {
   return {torch::empty({scans, kSlotPoints, 3}), torch::empty({scans, kSlotPatches, 3}),
-          torch::empty({scans, kSlotPatches, kSlotPatchPoints, 3}),
-          torch::empty({scans, kSlotPoints, kSlotNeighbours}, torch::kInt64),
-          torch::empty({scans, kSlotPoints, kSlotNeighbours})};
+          torch::empty({scans, kSlotPatches, kSlotPatchPoints, 3})};
 }
 
 void put_slot_points(const Points& points, int64_t row, SlotInput& input) {
@@ -76,17 +74,6 @@ void put_slot_points(const Points& points, int64_t row, SlotInput& input) {
     const std::vector<int> near = nearest_rows(points, centres.row(m), kSlotPatchPoints);
     for (int p = 0; p < kSlotPatchPoints; ++p)
       offsets.row(m * kSlotPatchPoints + p) = points.row(near[static_cast<size_t>(p)]) - centres.row(m);
-  }
-  int64_t* neighbour = input.neighbours.select(0, row).data_ptr<int64_t>();
-  float* nearness = of_row(input.nearness);
-  const Points all = centres;
-  for (int i = 0; i < kSlotPoints; ++i) {
-    float sum = 0, *const begin = nearness;
-    for (const int m : nearest_rows(all, points.row(i), kSlotNeighbours)) {
-      *neighbour++ = m;
-      sum += * nearness++ = 1 / ((all.row(m) - points.row(i)).squaredNorm() + 1e-3f);
-    }
-    for (int k = 0; k < kSlotNeighbours; ++k) begin[k] /= sum;
   }
 }
 
@@ -157,14 +144,12 @@ SlotNetImpl::SlotNetImpl(int64_t slots) : slots_(slots) {
   heading = register_module("heading", HeadingNet());
   encoder = register_module("encoder", SlotEncoder(kSlotLayers, W));
   choice_head = register_module("choice_head", Linear(W, slots));
-  share_head = register_module("share_head", Linear(W, slots));
   slot_head = register_module("slot_head", Sequential(Linear(W, 128), ReLU(), Linear(128, 3 + 6)));
   slot_embedding = register_parameter("slot_embedding", 0.5 * torch::randn({1, slots, W}));
   affinity = register_parameter("affinity", 0.01 * torch::randn({2, slots, slots - 1}));
 }
 
 SlotOutput SlotNetImpl::forward(const SlotInput& input) {
-  const auto B = input.centres.size(0), M = input.centres.size(1), N = input.points.size(1);
   SlotOutput out;
   out.heading = heading->forward(input.centres, input.offsets);  // [B, 2]
   const auto frame = frames_of(out.heading);                     // [B, 3, 3]
@@ -180,12 +165,7 @@ SlotOutput SlotNetImpl::forward(const SlotInput& input) {
   out.places = torch::matmul(places, frame.transpose(1, 2));
   out.turns = torch::matmul(frame.unsqueeze(1), turns);
 
-  const auto wish = share_head(x);  // [B, M, K]
-  const auto flat = input.neighbours + torch::arange(B, input.neighbours.options()).view({B, 1, 1}) * M;
-  const auto near =
-      wish.reshape({B * M, slots_}).index_select(0, flat.view({-1})).view({B, N, kSlotNeighbours, slots_});
-  const auto wished = (input.nearness.unsqueeze(3) * near).sum(2);  // [B, N, K]
-  out.shares = torch::softmax(wished - squared_distance(points, places) / (2 * kSlotReach * kSlotReach), 2);
+  out.shares = torch::softmax(-squared_distance(points, places) / (2 * kSlotReach * kSlotReach), 2);
   return out;
 }
 

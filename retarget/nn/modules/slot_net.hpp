@@ -11,15 +11,12 @@ namespace understudy::nn {
 constexpr int kSlotPoints = 512;      ///< of a scan that the network sees
 constexpr int kSlotPatches = 64;      ///< patch centres, far apart
 constexpr int kSlotPatchPoints = 16;  ///< nearest points of each centre
-constexpr int kSlotNeighbours = 4;    ///< patch centres that a point asks whose it is
 
 /// B scans, normalised: less the mean of their points, over one scale a sequence.
 struct SlotInput {
-  torch::Tensor points;      ///< [B, N, 3]
-  torch::Tensor centres;     ///< [B, M, 3]
-  torch::Tensor offsets;     ///< [B, M, P, 3] the patches' points less their centres
-  torch::Tensor neighbours;  ///< [B, N, 4] int64: each point's nearest centres
-  torch::Tensor nearness;    ///< [B, N, 4] how much each of them counts; sums to 1
+  torch::Tensor points;   ///< [B, N, 3]
+  torch::Tensor centres;  ///< [B, M, 3]
+  torch::Tensor offsets;  ///< [B, M, P, 3] the patches' points less their centres
 };
 /// Version of the network's form.
 constexpr int kSlotVersion = 1;
@@ -33,7 +30,7 @@ struct SlotOutput {
   torch::Tensor heading;  ///< [B, 2] where the body faces, x and z, unit length
   torch::Tensor places;   ///< [B, K, 3]
   torch::Tensor turns;    ///< [B, K, 3, 3] against a pose common to all bodies
-  torch::Tensor shares;   ///< [B, N, K] of the points; sum to 1
+  torch::Tensor shares;   ///< [B, N, K] of the points, the nearer ones' more; sum to 1
 };
 
 /// Paper 3, eq. 12: of each of N matrices the numbers [N, K, K - 1], without the diagonal, made to sum to 1 a row, with
@@ -81,13 +78,13 @@ class SlotNetImpl : public torch::nn::Module {
   torch::Tensor free_affinities() const { return kAffinityPace * affinity; }
 
  private:
-  static constexpr double kAffinityPace = 10;  // they are learnt so much faster than weights
+  static constexpr double kAffinityPace = 3;  // they are learnt so much faster than weights
 
   int64_t slots_;
   HeadingNet heading{nullptr};
   SlotEncoder encoder{nullptr};
   torch::nn::Sequential slot_head{nullptr};
-  torch::nn::Linear choice_head{nullptr}, share_head{nullptr};
+  torch::nn::Linear choice_head{nullptr};
   torch::Tensor slot_embedding, affinity;
 };
 TORCH_MODULE(SlotNet);
