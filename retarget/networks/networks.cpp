@@ -212,6 +212,16 @@ std::unique_ptr<MotionCoder> load_motion_coder(const std::string& folder) {
   return plugin().load_motion_coder(folder + "/motion_steps.weights");
 }
 
+std::unique_ptr<KeypointFinder> load_keypoint_finder(const std::string& folder, const std::string& method,
+                                                     const std::string& kind) {
+  const MethodChoice& choice = rig_method_named(method);
+  US_CHECK(choice.weights, "'", method, "' looks at the scans alone: there is no network of it");
+  US_CHECK(std::find(kMarionetteKinds.begin(), kMarionetteKinds.end(), kind) != kMarionetteKinds.end(), "'",
+           method, "' knows the kinds ", joined_once({kMarionetteKinds.begin(), kMarionetteKinds.end()}),
+           ", not '", kind, "'");
+  return plugin().load_keypoints(folder + "/" + choice.weights + "_" + kind + ".weights", method);
+}
+
 std::unique_ptr<StyleJudge> load_style_judge(const std::string& path) {
   return plugin().load_style_judge(path);
 }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "retarget/pipeline/interfaces.hpp"
+#include "retarget/pipeline/keypoint_finder.hpp"
 #include "retarget/pipeline/keypoint_transfer.hpp"
 #include "retarget/pipeline/lifter.hpp"
 #include "retarget/pipeline/motion_coder.hpp"
@@ -50,6 +51,12 @@ std::unique_ptr<MotionCoder> load_motion_coder(const std::string& folder);
 /// The judges of style of a weights file. Throws Error naming it when it is missing, damaged, of another
 /// network or of another version.
 std::unique_ptr<StyleJudge> load_style_judge(const std::string& path);
+
+/// What finds the keypoints of a kind of body, by one of rig_methods() that has weights, with those in that
+/// folder. Throws Error for other methods, for a kind that there are none for, and naming the file when it is
+/// damaged, of another network or of another version.
+std::unique_ptr<KeypointFinder> load_keypoint_finder(const std::string& folder, const std::string& method,
+                                                     const std::string& kind);
 
 /// What reads lengths off 2D poses, with the weights in that folder (proportions.weights); it needs no
 /// LibTorch. Throws Error naming the file when it is missing, damaged, of another network or of another

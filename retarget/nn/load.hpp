@@ -6,6 +6,7 @@
 #include <string>
 
 #include "retarget/pipeline/interfaces.hpp"
+#include "retarget/pipeline/keypoint_finder.hpp"
 #include "retarget/pipeline/motion_coder.hpp"
 #include "retarget/pipeline/motion_space.hpp"
 #include "retarget/style/motion_words.hpp"
@@ -31,5 +32,9 @@ std::unique_ptr<WordTranslator> load_words(const std::string& path);
 
 /// Judges style by three small networks (JudgeNet).
 std::unique_ptr<StyleJudge> load_judges(const std::string& path);
+
+/// Finds the keypoints of a kind by paper 3's own network (VoxelKeypointsNet), with the tree that its
+/// affinities make. It tells no turns. The grid and its width are the file's.
+std::unique_ptr<KeypointFinder> load_paper_keypoints(const std::string& path);
 
 }  // namespace understudy::nn

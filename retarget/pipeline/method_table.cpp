@@ -53,6 +53,17 @@ const MethodChoices& extractors() {
   return all;
 }
 
+const MethodChoices& rig_methods() {
+  static const MethodChoices all = {
+      {"parts", "Parts", "rigid parts", "parts that move as one in the scans themselves, and their joints",
+       nullptr},
+      {"paper", "Paper (small)", "paper 3's keypoints, trained small",
+       "the keypoints and the tree of paper 3's own network, on a coarser grid with fewer channels than the "
+       "paper's: for comparison",
+       "marionette_paper"}};
+  return all;
+}
+
 const MethodChoice& engine_named(const std::string& name) {
   const bool is_flat = index_of(engines(), name) < 0 && index_of(flat_engines(), name) >= 0;
   US_CHECK(!is_flat, "the engine '", name, "' is for 2D poses; for what moves in space there are ",
@@ -69,6 +80,10 @@ const MethodChoice& flat_engine_named(const std::string& name) {
 
 const MethodChoice& extractor_named(const std::string& name) {
   return named(extractors(), name, "extractor");
+}
+
+const MethodChoice& rig_method_named(const std::string& name) {
+  return named(rig_methods(), name, "way to find bones");
 }
 
 std::vector<std::string> names_of(const MethodChoices& choices) {

@@ -25,12 +25,15 @@ const MethodChoices& engines();
 /// Of 2D poses; nn::load_keypoint_transfer makes them.
 const MethodChoices& flat_engines();
 const MethodChoices& extractors();
+/// How bones of any body are found. Those with weights have a file for each kind of body, FILE_KIND.weights.
+const MethodChoices& rig_methods();
 
 /// Throws Error with the names that there are: "there is no engine 'x': " and the names; of an engine
 /// of the other kind it says so.
 const MethodChoice& engine_named(const std::string& name);
 const MethodChoice& flat_engine_named(const std::string& name);
 const MethodChoice& extractor_named(const std::string& name);
+const MethodChoice& rig_method_named(const std::string& name);
 
 std::vector<std::string> names_of(const MethodChoices& choices);
 /// "copy, paper".

@@ -62,6 +62,11 @@ Networks load(const NetworkOptions& options, const std::string& folder, const Ne
   return networks;
 }
 
+std::unique_ptr<KeypointFinder> load_keypoints(const std::string& path, const std::string& method) {
+  if (method == "paper") return load_paper_keypoints(path);
+  throw Error("the networks plug-in does not know keypoints by " + method);
+}
+
 int train_network(const AnyTrainOptions& any) {
   return std::visit([](const auto& options) { return training::train(options); }, any);
 }
@@ -71,7 +76,8 @@ int train_network(const AnyTrainOptions& any) {
 
 const understudy::nn::PluginApi* understudy_networks_plugin() {
   using namespace understudy::nn;
-  static const PluginApi api{kPluginVersion, send_log_to, load,   load_inbetween_space, load_step_coder,
-                             load_words,     load_judges, report, train_network};
+  static const PluginApi api{kPluginVersion,  send_log_to,  load,        load_inbetween_space,
+                             load_step_coder, load_words,   load_judges, load_keypoints,
+                             report,          train_network};
   return &api;
 }
