@@ -61,6 +61,23 @@ void add_own(CLI::App& command, nn::PartTrainOptions& options) {
 void add_own(CLI::App&, nn::DeformationTrainOptions&) {}
 void add_own(CLI::App&, nn::ProportionsTrainOptions&) {}
 void add_own(CLI::App&, nn::PointsTrainOptions&) {}
+/// Whose keypoints or motions.
+void add_kind(CLI::App& command, std::string& kind) {
+  command.add_option("--kind", kind, "person, quadruped, hand or arm (default: person)")
+      ->check(
+          CLI::IsMember(std::vector<std::string>(nn::kMarionetteKinds.begin(), nn::kMarionetteKinds.end())));
+}
+void add_own(CLI::App& command, nn::MarionettePaperTrainOptions& options) {
+  add_kind(command, options.kind);
+  command.add_option("--grid", options.grid, "cells along an edge: 32 (default), 64 (the paper's), ...")
+      ->check(CLI::Range(32, 128));
+  command.add_option("--width", options.width, "channels of features: 32 (default) ... 128 (the paper's)")
+      ->check(CLI::Range(16, 256));
+  command.add_flag("!--no-vol", options.volume, "without L_vol, which spreads keypoints over the body");
+  command.add_flag("!--no-traj", options.trajectory, "without L_traj: what goes alike hangs together");
+  command.add_flag("!--no-local", options.local, "without L_local: what is near hangs together");
+  command.add_flag("!--no-time", options.time, "without L_time: what stays as far apart hangs together");
+}
 void add_own(CLI::App& command, nn::Pose2dTrainOptions& options) {
   command
       .add_option("--links", options.links,
@@ -235,6 +252,8 @@ Action declare_train(CLI::App& command) {
   add_network<nn::Pose2dTrainOptions>(command, "2D poses performed by others, paper 5's network", chosen);
   add_network<nn::LifterTrainOptions>(command, "skeletons in space, from 2D poses", chosen);
   add_network<nn::PointsTrainOptions>(command, "the filter of 2D points", chosen);
+  add_network<nn::MarionettePaperTrainOptions>(
+      command, "keypoints and tree of a kind of body from its scans alone, paper 3's network", chosen);
   return [chosen] { return (*chosen)(); };
 }
 
