@@ -70,6 +70,17 @@ void add_kind(CLI::App& command, std::string& kind) {
 void add_own(CLI::App& command, nn::MarionetteSlotsTrainOptions& options) {
   add_kind(command, options.kind);
 }
+void add_own(CLI::App& command, nn::MarionettePaperTrainOptions& options) {
+  add_kind(command, options.kind);
+  command.add_option("--grid", options.grid, "cells along an edge: 32 (default), 64 (the paper's), ...")
+      ->check(CLI::Range(32, 128));
+  command.add_option("--width", options.width, "channels of features: 32 (default) ... 128 (the paper's)")
+      ->check(CLI::Range(16, 256));
+  command.add_flag("!--no-vol", options.volume, "without L_vol, which spreads keypoints over the body");
+  command.add_flag("!--no-traj", options.trajectory, "without L_traj: what goes alike hangs together");
+  command.add_flag("!--no-local", options.local, "without L_local: what is near hangs together");
+  command.add_flag("!--no-time", options.time, "without L_time: what stays as far apart hangs together");
+}
 void add_own(CLI::App& command, nn::Pose2dTrainOptions& options) {
   command
       .add_option("--links", options.links,
@@ -246,6 +257,8 @@ Action declare_train(CLI::App& command) {
   add_network<nn::PointsTrainOptions>(command, "the filter of 2D points", chosen);
   add_network<nn::MarionetteSlotsTrainOptions>(
       command, "keypoints and tree of a kind of body, from its scans alone", chosen);
+  add_network<nn::MarionettePaperTrainOptions>(
+      command, "keypoints and tree of a kind of body from its scans alone, paper 3's network", chosen);
   return [chosen] { return (*chosen)(); };
 }
 

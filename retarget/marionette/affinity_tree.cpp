@@ -96,20 +96,26 @@ class Parents {
   Parents(const RowMatrix& affinity, const RowMatrix& edges, std::vector<int> rank)
       : affinity_(affinity), edges_(edges), rank_(std::move(rank)) {}
 
-  int of(int i) const {
+  /// Of the root -1.
+  int of(int i, const std::vector<int>& so_far) const {
     if (rank(i) == 0) return -1;
     const std::vector<int> nearer = neighbours(i, [&](int j) { return rank(j) < rank(i); });
     const int usual =
         *std::max_element(nearer.begin(), nearer.end(), [this](int a, int b) { return rank(a) < rank(b); });
     for (const int j : neighbours(i, [&](int k) { return rank(k) == rank(i); })) {
       const int shared = furthest_shared(nearer, j);
-      if (shared >= 0 && affinity_(shared, j) > affinity_(shared, i)) return j;
+      if (shared >= 0 && affinity_(shared, j) > affinity_(shared, i) && !hangs_on(j, i, so_far)) return j;
     }
     return usual;
   }
 
  private:
   int rank(int i) const { return rank_[static_cast<size_t>(i)]; }
+  /// Three of one rank could each prefer the next: then it would be no tree.
+  static bool hangs_on(int j, int i, const std::vector<int>& so_far) {
+    while (j >= 0 && j != i) j = j < static_cast<int>(so_far.size()) ? so_far[static_cast<size_t>(j)] : -1;
+    return j == i;
+  }
   template <class Counts>
   std::vector<int> neighbours(int i, const Counts& counts) const {
     std::vector<int> found;
@@ -133,11 +139,13 @@ class Parents {
 
 std::vector<int> tree_of_affinity(const std::vector<RowMatrix>& affinities) {
   const RowMatrix affinity = joined(affinities);
+  US_CHECK(static_cast<Eigen::Index>(affinities.size()) < affinity.rows() || affinity.rows() == 1,
+           affinities.size(), " affinities are too many for ", affinity.rows(), " keypoints");
   RowMatrix edges = neighbours_of(affinity, static_cast<Eigen::Index>(affinities.size()));
   const int root = connect(edges);
   const Parents parents(affinity, edges, ranks_of(affinity, edges, root));
   std::vector<int> tree;
-  for (int i = 0; i < static_cast<int>(affinity.rows()); ++i) tree.push_back(parents.of(i));
+  for (int i = 0; i < static_cast<int>(affinity.rows()); ++i) tree.push_back(parents.of(i, tree));
   return tree;
 }
 

@@ -52,7 +52,7 @@ std::vector<VoxelSet> cells_of(const std::vector<Points>& vertices, const Faces&
 
 }  // namespace
 
-VoxelGrid::VoxelGrid(const std::vector<Points>& frames) {
+VoxelGrid::VoxelGrid(const std::vector<Points>& frames, int edge) : edge_(edge) {
   Vec3 low = Vec3::Constant(std::numeric_limits<float>::infinity()), high = -low;
   for (const Points& frame : frames) {
     if (frame.rows() == 0) continue;
@@ -77,25 +77,32 @@ std::vector<int> VoxelGrid::cells_of_each(const Points& points) const {
   for (const auto& point : points.rowwise()) {
     if (!point.allFinite()) continue;
     const Vec3 at = ((point.transpose() - middle_) / half_).cwiseMax(-1.0f).cwiseMin(1.0f);
-    const Eigen::Array3i cell = ((at.array() + 1) * (0.5f * (kVoxels - 1))).round().cast<int>();
-    cells.push_back((cell.z() * kVoxels + cell.y()) * kVoxels + cell.x());
+    const Eigen::Array3i cell = ((at.array() + 1) * (0.5f * static_cast<float>(edge_ - 1))).round().cast<int>();
+    cells.push_back((cell.z() * edge_ + cell.y()) * edge_ + cell.x());
   }
   return cells;
 }
 
-Points VoxelGrid::centres(const VoxelSet& cells) {
+Points VoxelGrid::centres(const VoxelSet& cells, int edge) {
   Points centres(cells.size(), 3);
   for (size_t i = 0; i < cells.size(); ++i)
-    centres.row(i) =
-        Eigen::RowVector3i(cells[i] % kVoxels, cells[i] / kVoxels % kVoxels, cells[i] / (kVoxels * kVoxels))
-            .cast<float>();
-  return (centres.array() * (2.0f / (kVoxels - 1)) - 1).matrix();
+    centres.row(i) = Eigen::RowVector3i(cells[i] % edge, cells[i] / edge % edge, cells[i] / (edge * edge))
+                         .cast<float>();
+  return (centres.array() * (2.0f / static_cast<float>(edge - 1)) - 1).matrix();
 }
 
-double voxel_distance(const VoxelSet& a, const VoxelSet& b) {
+Points VoxelGrid::scaled(const Points& world) const {
+  return (world.rowwise() - middle_.transpose()) / half_;
+}
+
+Points VoxelGrid::world(const Points& scaled) const {
+  return (half_ * scaled).rowwise() + middle_.transpose();
+}
+
+double voxel_distance(const VoxelSet& a, const VoxelSet& b, int edge) {
   if (a.empty() && b.empty()) return 0;
   if (a.empty() || b.empty()) return kOneEmpty;
-  const Points in_a = VoxelGrid::centres(a), in_b = VoxelGrid::centres(b);
+  const Points in_a = VoxelGrid::centres(a, edge), in_b = VoxelGrid::centres(b, edge);
   return mean_squared(in_a, in_b) + mean_squared(in_b, in_a);
 }
 

@@ -1,4 +1,5 @@
-// How far two moving bodies are from each other as paper 3 measures it: on a grid of 64 x 64 x 64.
+// How far two moving bodies are from each other as paper 3 measures it: on a grid, of 64 x 64 x 64 where nothing
+// else is said.
 #pragma once
 
 #include <array>
@@ -8,29 +9,33 @@
 
 namespace understudy {
 
-constexpr int kVoxels = 64;  ///< along an edge of the grid, whose first and last centres are at -1 and 1
+constexpr int kVoxels = 64;  ///< along the paper's edge; the first and last centres are at -1 and 1
 /// Numbers of occupied cells, rising.
 using VoxelSet = std::vector<int>;
 
 /// The one cube about all frames of a sequence, scaled to [-1, 1]^3. Throws Error where there is no point.
 class VoxelGrid {
  public:
-  explicit VoxelGrid(const std::vector<Points>& frames);
+  explicit VoxelGrid(const std::vector<Points>& frames, int edge = kVoxels);
   /// Cells that points are in; those outside are put on the border, those not finite left out.
   VoxelSet cells(const Points& points) const;
   /// The same, each point's own, in their order.
   std::vector<int> cells_of_each(const Points& points) const;
   /// Centres in [-1, 1]^3, [N, 3].
-  static Points centres(const VoxelSet& cells);
+  static Points centres(const VoxelSet& cells, int edge = kVoxels);
+  /// Places of the world in [-1, 1]^3, and back, [N, 3].
+  Points scaled(const Points& world) const;
+  Points world(const Points& scaled) const;
 
  private:
+  int edge_;
   Vec3 middle_;
   float half_;  // metres
 };
 
 /// Mean squared distance from each cell's centre to the nearest of the other set, both directions added, in
 /// [-1, 1]^3. 0 where both are empty, 4 (a whole edge, squared) where one is.
-double voxel_distance(const VoxelSet& a, const VoxelSet& b);
+double voxel_distance(const VoxelSet& a, const VoxelSet& b, int edge = kVoxels);
 
 /// Errors of the set `found` of each frame against the true one.
 struct VoxelErrors {

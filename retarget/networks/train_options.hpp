@@ -119,10 +119,22 @@ struct MarionetteSlotsTrainOptions : TrainOptions {
   std::string kind = "person";  ///< of kMarionetteKinds
 };
 
+/// Paper 3's own detector of keypoints; what is not the paper's choice is for its ablations.
+struct MarionettePaperTrainOptions : TrainOptions {
+  static constexpr const char* kNetwork = "marionette-paper";
+  std::string kind = "person";     ///< of kMarionetteKinds
+  int grid = 32;                   ///< cells along an edge, a multiple of 32; the paper's 64
+  int width = 32;                  ///< channels of the features, a multiple of 16; the paper's 128
+  bool volume = true;              ///< L_vol
+  bool trajectory = true;          ///< L_traj
+  bool local = true, time = true;  ///< L_local, L_time
+};
+
 using AnyTrainOptions =
     std::variant<SkeletonTrainOptions, PartTrainOptions, MotionTrainOptions, DeformationTrainOptions,
                  MotionSpaceTrainOptions, StyleTrainOptions, StyleJudgeTrainOptions, ProportionsTrainOptions,
-                 Pose2dTrainOptions, LifterTrainOptions, PointsTrainOptions, MarionetteSlotsTrainOptions>;
+                 Pose2dTrainOptions, LifterTrainOptions, PointsTrainOptions, MarionetteSlotsTrainOptions,
+                 MarionettePaperTrainOptions>;
 
 /// Trains until the minutes or samples are used up, going on from the checkpoint where there is one. 0 when
 /// it came to the end, 1 when it was cancelled. Throws Error.

@@ -36,4 +36,8 @@ std::unique_ptr<StyleJudge> load_judges(const std::string& path);
 /// Finds the keypoints of a kind by slots (SlotNet), with the tree that its affinities make.
 std::unique_ptr<KeypointFinder> load_slots(const std::string& path);
 
+/// Finds the keypoints of a kind by paper 3's own network (VoxelKeypointsNet), with the tree that its
+/// affinities make. It tells no turns. The grid and its width are the file's.
+std::unique_ptr<KeypointFinder> load_paper_keypoints(const std::string& path);
+
 }  // namespace understudy::nn

@@ -59,7 +59,11 @@ const MethodChoices& rig_methods() {
        nullptr},
       {"slots", "Slots", "a kind's keypoints",
        "the keypoints and the tree that a network of this kind of body finds in every scan of it",
-       "marionette_slots"}};
+       "marionette_slots"},
+      {"paper", "Paper (small)", "paper 3's keypoints, trained small",
+       "the keypoints and the tree of paper 3's own network, on a coarser grid with fewer channels than the "
+       "paper's: for comparison",
+       "marionette_paper"}};
   return all;
 }
 

@@ -64,6 +64,7 @@ Networks load(const NetworkOptions& options, const std::string& folder, const Ne
 
 std::unique_ptr<KeypointFinder> load_keypoints(const std::string& path, const std::string& method) {
   if (method == "slots") return load_slots(path);
+  if (method == "paper") return load_paper_keypoints(path);
   throw Error("the networks plug-in does not know keypoints by " + method);
 }
 

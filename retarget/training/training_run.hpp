@@ -156,6 +156,8 @@ int train(const nn::LifterTrainOptions& options);
 int train(const nn::PointsTrainOptions& options);
 /// Samples are windows.
 int train(const nn::MarionetteSlotsTrainOptions& options);
+/// Samples are windows of ten frames.
+int train(const nn::MarionettePaperTrainOptions& options);
 /// Of the form "paper"; samples are steps.
 int train_steps(const nn::MotionSpaceTrainOptions& options);
 

@@ -39,6 +39,14 @@ TEST(VoxelGrid, HasOneScaleForAllAxes) {
   EXPECT_NEAR(VoxelGrid::centres(grid.cells(flat))(1, 1), 1.5 * kCell, 1e-6);  // three cells apart
 }
 
+TEST(VoxelGrid, MayBeCoarser) {
+  const VoxelGrid grid({corners()}, 3);
+  const Points centres = VoxelGrid::centres(grid.cells(with(Points(0, 3), 20, 0, 0)), 3);
+  EXPECT_EQ(centres.row(0), (Eigen::RowVector3f(0, -1, -1))) << "the second of three";
+  EXPECT_NEAR(voxel_distance({0}, {1}, 3), 2, 1e-6) << "a cell is half an edge";
+  EXPECT_TRUE(grid.world(grid.scaled(corners())).isApprox(corners()));
+}
+
 TEST(VoxelGrid, TakesWhatLiesOutsideToItsBorder) {
   const VoxelGrid grid({corners()});
   EXPECT_EQ(grid.cells(with(with(Points(0, 3), -50, 0, 0), NAN, 0, 0)), VoxelSet{0});
