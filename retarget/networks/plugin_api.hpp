@@ -8,7 +8,7 @@
 
 namespace understudy::nn {
 
-constexpr int kPluginVersion = 14;
+constexpr int kPluginVersion = 16;
 
 struct PluginApi {
   int version;
@@ -19,6 +19,7 @@ struct PluginApi {
   std::unique_ptr<MotionCoder> (*load_motion_coder)(const std::string& path);
   std::unique_ptr<WordTranslator> (*load_words)(const std::string& path);
   std::unique_ptr<StyleJudge> (*load_style_judge)(const std::string& path);
+  std::unique_ptr<MotionDynamics> (*load_dynamics)(const std::string& path);
   RuntimeReport (*report)();
   int (*train)(const AnyTrainOptions& options);
 };

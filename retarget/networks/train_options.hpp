@@ -113,10 +113,18 @@ struct PointsTrainOptions : TrainOptions {
 /// Kinds of bodies that paper 3's networks are trained on.
 constexpr std::array<const char*, 4> kMarionetteKinds = {"person", "quadruped", "hand", "arm"};
 
+/// The dynamics of bodies of one kind. Where there is neither minutes nor samples, as many samples as the
+/// shipped weights saw.
+struct MarionetteDynamicsTrainOptions : TrainOptions {
+  static constexpr const char* kNetwork = "marionette-dynamics";
+  std::string kind = "person";     ///< one of kMarionetteKinds
+  std::string form = "rotations";  ///< or "positions", the paper's baseline
+};
+
 using AnyTrainOptions =
     std::variant<SkeletonTrainOptions, PartTrainOptions, MotionTrainOptions, DeformationTrainOptions,
                  MotionSpaceTrainOptions, StyleTrainOptions, StyleJudgeTrainOptions, ProportionsTrainOptions,
-                 Pose2dTrainOptions, LifterTrainOptions, PointsTrainOptions>;
+                 Pose2dTrainOptions, LifterTrainOptions, PointsTrainOptions, MarionetteDynamicsTrainOptions>;
 
 /// Trains until the minutes or samples are used up, going on from the checkpoint where there is one. 0 when
 /// it came to the end, 1 when it was cancelled. Throws Error.

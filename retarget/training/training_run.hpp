@@ -154,6 +154,8 @@ int train(const nn::Pose2dTrainOptions& options);
 /// Samples are sequences; where the options have no end there is one.
 int train(const nn::LifterTrainOptions& options);
 int train(const nn::PointsTrainOptions& options);
+/// Samples are motions; where the options have no end there is one.
+int train(const nn::MarionetteDynamicsTrainOptions& options);
 /// Of the form "paper"; samples are steps.
 int train_steps(const nn::MotionSpaceTrainOptions& options);
 
