@@ -50,7 +50,7 @@ std::string hurry_of(const RiggedMotion& known, const GenerationOptions& options
 }
 
 /// As far as a pose is from another: mean distance of joints.
-double pose_distance(const Rig& rig, const RigPose& a, const RigPose& b) {
+double pose_distance(const understudy::Rig& rig, const RigPose& a, const RigPose& b) {
   return static_cast<double>(
       (joint_places(rig, bone_motions(rig, a)) - joint_places(rig, bone_motions(rig, b)))
           .rowwise()
