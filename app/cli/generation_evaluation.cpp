@@ -76,7 +76,7 @@ Between by_network(const RiggedMotion& truth, MotionDynamics& dynamics) {
   return [&](const std::vector<PoseKey>& keys) {
     Rng rng(1);
     std::vector<RigPose> poses = dynamics.aimed(keys, 1 / truth.motion.fps, kAimSteps, rng);
-    meet_keys(truth.rig, truth.motion.fps, keys, poses);
+    settle_on_keys(truth.rig, truth.motion.fps, keys, poses);
     return poses;
   };
 }

@@ -86,7 +86,7 @@ std::vector<RigPose> made_by_network(const RiggedMotion& known, const Generation
   if (!keys.empty()) {
     std::vector<RigPose> poses = options.paper_sampling ? best_of_many(known, dynamics, keys, rng)
                                                         : dynamics.aimed(keys, dt, kAimSteps, rng);
-    meet_keys(known.rig, known.motion.fps, keys, poses);
+    settle_on_keys(known.rig, known.motion.fps, keys, poses);
     return poses;
   }
   dynamics.begin(known.rig);

@@ -287,17 +287,6 @@ void close_loop(const Rig& rig, double fps, std::vector<RigPose>& poses) {
   meet_keys(rig, fps, {{0, poses.front()}, {static_cast<int>(ssize(poses)) - 1, last}}, poses);
 }
 
-/// Joints about the root, facing +z.
-std::vector<Points> own_places(const Rig& rig, const std::vector<RigPose>& poses) {
-  std::vector<Points> places;
-  for (RigPose pose : poses) {
-    pose.turns[0] = rotation_about_y(-heading_of(pose.turns[0])) * pose.turns[0];
-    pose.root.setZero();
-    places.push_back(joint_places(rig, bone_motions(rig, pose)));
-  }
-  return places;
-}
-
 }  // namespace
 
 RigMotion matched_motion(const Rig& rig, const std::vector<RigMotion>& examples,
