@@ -18,8 +18,8 @@ torch::Tensor rows_for(const nn::RotationVrnnImpl& net, const DynamicsBatch& bat
 /// root's way, and the divergence of the posterior from the prior.
 LossSum dynamics_loss(nn::RotationVrnn& net, const DynamicsBatch& batch, const std::vector<int>& parents);
 
-/// mm... in 1/1000 of the body's size: joints of frames that the posterior saw, and of the tenth frame that
-/// the prior's means say after ten; the divergence.
+/// Joints, in thousandths of the body's size: of frames that the posterior saw, of the tenth one that the
+/// prior's means say after ten seen, and of a body that stands still instead; the divergence.
 Figures dynamics_figures(nn::RotationVrnn& net, const DynamicsBatch& batch, const std::vector<int>& parents);
 
 }  // namespace understudy::training
