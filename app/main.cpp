@@ -24,6 +24,7 @@ constexpr Subcommand kSubcommands[] = {
     {"retarget", "lets a target perform what a source does", declare_retarget},
     {"export", "a character performs motions, as an animated GLB or glTF", declare_export},
     {"discover", "finds the bones of anything that moves in its scans", declare_discover},
+    {"generate", "makes more of what a rigged character does in its clip", declare_generate},
     {"fill", "makes the frames of a motion that were not captured, or not well", declare_fill},
     {"style", "lets somebody move in another style, on their own bones", declare_style},
     {"sheet", "shows several performances below each other, a moment a column", declare_sheet},

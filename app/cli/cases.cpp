@@ -14,11 +14,12 @@ Action declare_cases(CLI::App& command) {
                      "folder of people and motions with splits.json; creatures need none");
   command.add_option("--suite", options->suite, "the suite to make")
       ->required()
-      ->check(CLI::IsMember({"naked",           "clothed",  "captured", "hands",      "bends",
-                             "extraction",      "occluded", "partial",  "sensors",    "scenes",
-                             "inbetween",       "predict",  "sparse",   "creatures",  "creatures-captured",
-                             "creatures-pairs", "style",    "pose2d",   "pose2d-odd", "pose2d-noisy",
-                             "pose2d-seen",     "lifting"}));
+      ->check(
+          CLI::IsMember({"naked",           "clothed",         "captured", "hands",     "bends",
+                         "extraction",      "occluded",        "partial",  "sensors",   "scenes",
+                         "inbetween",       "predict",         "sparse",   "creatures", "creatures-captured",
+                         "creatures-pairs", "marionette-gaps", "style",    "pose2d",    "pose2d-odd",
+                         "pose2d-noisy",    "pose2d-seen",     "lifting"}));
   command.add_option("--out", options->out, "folder that the cases go into")->required();
   command.add_option("--split", options->split,
                      "split of splits.json, of creatures dev or train (default: dev)");

@@ -16,6 +16,7 @@ using Action = std::function<int()>;
 Action declare_retarget(CLI::App& command);
 Action declare_export(CLI::App& command);
 Action declare_discover(CLI::App& command);
+Action declare_generate(CLI::App& command);
 Action declare_fill(CLI::App& command);
 Action declare_blend(CLI::App& command);
 Action declare_style(CLI::App& command);

@@ -8,11 +8,11 @@
 #include "app/cli/options.hpp"
 #include "app/cli/preview.hpp"
 #include "app/cli/progress.hpp"
+#include "app/cli/rig_moment.hpp"
 #include "app/run/exports.hpp"
 #include "app/run/interrupt.hpp"
 #include "app/run/rig_finder.hpp"
 #include "app/run/rig_performance.hpp"
-#include "render/colors.hpp"
 #include "render/image.hpp"
 #include "retarget/base/error.hpp"
 #include "retarget/base/index.hpp"
@@ -91,36 +91,15 @@ DiscoveredRig found_in(const ScanSequence& scans, const DiscoverOptions& options
   return rig;
 }
 
-/// The skeleton in the scan, and the surface painted by its bones.
-render::SheetMoment moment_of(const DiscoveredRig& rig, const ScanSequence& scans, int frame,
-                              const Points& colors) {
-  const understudy::Rig& found = rig.found.rig;
-  const BoneMotions bones = bone_motions(found, rig.found.motion.poses[static_cast<size_t>(frame)]);
-  render::SheetMoment moment;
-  moment.frame = frame;
-  moment.seconds = frame / rig.found.motion.fps;
-  moment.source = scans.scan(frame);
-  render::SkeletonView& skeleton = moment.skeleton.emplace();
-  skeleton.joints = joint_places(found, bones);
-  for (const RigJoint& joint : found.joints) skeleton.parents.push_back(joint.parent);
-  for (const BoneTip& tip : bone_tips(found)) {
-    skeleton.joints.conservativeResize(skeleton.joints.rows() + 1, 3);
-    skeleton.joints.bottomRows<1>() = bones[static_cast<size_t>(tip.joint)](tip.rest).transpose();
-    skeleton.parents.push_back(tip.joint);
-  }
-  constexpr float kAdult = 2;  // diagonal of an adult's box, metres
-  skeleton.thickness = box_diagonal(found.surface.vertices) / kAdult;
-  moment.target = Mesh{skinned(found.surface.vertices, found.skin, bones), found.surface.faces, colors};
-  return moment;
-}
-
 void write_sheet(const DiscoverOptions& options, const DiscoveredRig& rig, const ScanSequence& scans) {
-  const Points colors = render::weight_colors(rig.found.rig.skin.dense(rig.found.rig.count()));
   std::vector<render::SheetMoment> moments;
   const int shown = std::min(PreviewMoments::kShown, scans.count);
   moments.reserve(static_cast<size_t>(shown));
-  for (int i = 0; i < shown; ++i)
-    moments.push_back(moment_of(rig, scans, i * (scans.count - 1) / std::max(1, shown - 1), colors));
+  for (int i = 0; i < shown; ++i) {
+    const int frame = i * (scans.count - 1) / std::max(1, shown - 1);
+    moments.push_back(rig_moment(rig.found, frame));
+    moments.back().source = scans.scan(frame);
+  }
   render::SheetOptions sheet;
   const std::string bones = std::to_string(rig.found.rig.count()) + " bones";
   sheet.title = options.perform.empty() ? name_of(options.source) + ": " + bones + " found"

@@ -6,6 +6,7 @@
 
 #include "app/cli/flat_evaluation.hpp"
 #include "app/cli/gap_evaluation.hpp"
+#include "app/cli/generation_evaluation.hpp"
 #include "app/cli/keypoint_evaluation.hpp"
 #include "app/cli/lift_evaluation.hpp"
 #include "app/cli/style_evaluation.hpp"
@@ -393,6 +394,10 @@ void evaluate_case(Bench& bench, const std::string& folder, const Case& c, CaseR
   if (c.style) return bench.styles().evaluate(c, result);
   if (c.flat) {
     bench.flat_poses().evaluate(c, result);
+    return breakdown.add_kind(c.tags.size() > 1 ? c.tags[1] : c.name, result.metrics);
+  }
+  if (!c.rig.empty()) {
+    evaluate_generation(c, options, result);
     return breakdown.add_kind(c.tags.size() > 1 ? c.tags[1] : c.name, result.metrics);
   }
   if (c.lifted) {

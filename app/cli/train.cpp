@@ -100,6 +100,15 @@ void add_own(CLI::App& command, nn::LifterTrainOptions& options) {
   command.add_option("--frames", options.frames, "frames of a sequence (default: 40)")
       ->check(CLI::Range(2, 1000));
 }
+void add_own(CLI::App& command, nn::MarionetteDynamicsTrainOptions& options) {
+  command.add_option("--kind", options.kind, "of bodies (default: person); all but people are made by code")
+      ->check(
+          CLI::IsMember(std::vector<std::string>(nn::kMarionetteKinds.begin(), nn::kMarionetteKinds.end())));
+  command
+      .add_option("--form", options.form,
+                  "rotations (default); positions, of joints, which paper 3 compares with")
+      ->check(CLI::IsMember({"rotations", "positions"}));
+}
 void add_own(CLI::App& command, nn::MotionSpaceTrainOptions& options) {
   command
       .add_option(
@@ -259,6 +268,8 @@ Action declare_train(CLI::App& command) {
       command, "keypoints and tree of a kind of body, from its scans alone", chosen);
   add_network<nn::MarionettePaperTrainOptions>(
       command, "keypoints and tree of a kind of body from its scans alone, paper 3's network", chosen);
+  add_network<nn::MarionetteDynamicsTrainOptions>(command, "how bodies of a kind move, paper 3's network",
+                                                  chosen);
   return [chosen] { return (*chosen)(); };
 }
 

@@ -201,7 +201,8 @@ Case read_case(const std::string& folder) {
   result.name = file_name(fs::absolute(root).lexically_normal().string());
   result.source = text("source");
   result.gaps = gaps_of(json, result.source, path);
-  US_CHECK(!result.source.empty() || result.gaps, path, ": has no \"source\"");
+  result.rig = text("rig");
+  US_CHECK(!result.source.empty() || result.gaps || !result.rig.empty(), path, ": has no \"source\"");
   result.times = text("times");
   result.markers = text("markers");
   result.target = text("target");

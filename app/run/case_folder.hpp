@@ -42,6 +42,8 @@ struct Case {
   std::optional<StyleCase> style = {};  ///< how it is performed is evaluated, on its own bones
   std::optional<FlatCase> flat = {};    ///< 2D poses are performed by another person
   bool lifted = false;                  ///< 2D poses are performed in space
+  std::string rig =
+      {};  ///< path of a rig and its motion, between whose frames others are to be made; empty: none
   /// Of two bodies of a kind, the second of which shall perform what the first did (`target` are its scans
   /// then): paths of its own truth, and of what it does under the first one's true angles; empty: none.
   std::string target_truth = {}, performed_truth = {};

@@ -6,6 +6,7 @@
 #include "app/run/case_writer.hpp"
 #include "app/run/interrupt.hpp"
 #include "app/run/report.hpp"
+#include "app/run/rig_performance.hpp"
 #include "app/run/rig_truth_file.hpp"
 #include "retarget/base/error.hpp"
 #include "retarget/base/index.hpp"
@@ -37,6 +38,7 @@ Seeds seeds_of(const std::string& split) {
 struct CreaturePlan {
   std::string name, kind, motion;
   std::function<RigTruth()> make;
+  std::function<understudy::Rig()> rig = {};  ///< in names and kinds of joints; empty: a person's
 };
 
 RigTruth creature_truth(CreatureKind kind, uint64_t seed, int motion, int frames) {
@@ -53,7 +55,46 @@ CreaturePlan creature_plan(size_t which, uint64_t seed, int frames) {
   const auto motion = static_cast<size_t>(seed % motions.size());
   return {printed("%s%03d_%s", kCreatureNames[which], static_cast<int>(seed), motions[motion].c_str()),
           kCreatureNames[which], motions[motion],
-          [=] { return creature_truth(kind, seed, static_cast<int>(motion), frames); }};
+          [=] { return creature_truth(kind, seed, static_cast<int>(motion), frames); },
+          [=] { return make_creature(kind, seed); }};
+}
+
+/// People's 22 joints where they are at rest.
+understudy::Rig person_rig(const RigTruth& truth) {
+  understudy::Rig rig;
+  rig.name = "person";
+  for (int j = 0; j < kJointCount; ++j) {
+    const RigidMotion& bone = truth.bones[0][static_cast<size_t>(j)];
+    rig.joints.push_back({kJointNames[static_cast<size_t>(j)], kParents[static_cast<size_t>(j)],
+                          j == 0 ? JointKind::Free : JointKind::Ball,
+                          bone.inverse()(truth.joints[0].row(j).transpose()), Vec3::UnitY()});
+  }
+  rig.surface = {truth.rest, truth.faces};
+  rig.skin = SkinWeights::from(truth.weights);
+  return rig;
+}
+
+/// A rig with a clip, and nothing else.
+void make_rig_case(const CreaturePlan& plan, const SuiteOptions& options) {
+  const fs::path folder = fs::path(options.out) / plan.name;
+  fs::create_directories(folder);
+  const RigTruth truth = plan.make();
+  RiggedMotion performed{plan.rig ? plan.rig() : person_rig(truth), {kFps, {}}};
+  for (const BoneMotions& bones : truth.bones)
+    performed.motion.poses.push_back(pose_of(performed.rig, bones));
+  write_rig((folder / "rig.glb").string(), performed);
+  write_json((folder / "case.json").string(),
+             {{"fps", kFps}, {"rig", "rig.glb"}, {"tags", {options.suite, plan.kind, plan.motion}}});
+}
+
+bool is_of_gaps(const SuiteOptions& options) {
+  return options.suite == "marionette-gaps";
+}
+
+/// Whether a network learns how a kind moves.
+bool has_dynamics(size_t kind) {
+  const auto which = static_cast<CreatureKind>(kind);
+  return which == CreatureKind::Arm || which == CreatureKind::Hand || which == CreatureKind::Quadruped;
 }
 
 /// A creature, and another of its kind that shall perform what it did.
@@ -237,7 +278,8 @@ int make_pairs(const SuiteOptions& options, const std::function<void(const std::
 }  // namespace
 
 bool is_creature_suite(const std::string& suite) {
-  return suite == "creatures" || suite == "creatures-captured" || suite == "creatures-pairs";
+  return suite == "creatures" || suite == "creatures-captured" || suite == "creatures-pairs" ||
+         suite == "marionette-gaps";
 }
 
 int make_creature_suite(const SuiteOptions& options, const std::optional<DataSplit>& people,
@@ -250,13 +292,14 @@ int make_creature_suite(const SuiteOptions& options, const std::optional<DataSpl
   std::vector<CreaturePlan> plans;  // a seed of each kind after the other: few cases show all kinds
   for (uint64_t i = 0; i < seeds.count; ++i) {
     for (size_t kind = 0; kind < kCreatureNames.size(); ++kind)
-      plans.push_back(creature_plan(kind, seeds.first + i, options.frames));
+      if (!is_of_gaps(options) || has_dynamics(kind))
+        plans.push_back(creature_plan(kind, seeds.first + i, options.frames));
     if (person && i < kPeople) plans.push_back(person->plan(i));
   }
   if (options.cases > 0 && ssize(plans) > options.cases) plans.resize(options.cases);
   for (const CreaturePlan& plan : plans) {
     check_interrupt("before case " + plan.name);
-    make_case(plan, options);
+    is_of_gaps(options) ? make_rig_case(plan, options) : make_case(plan, options);
     done(plan.name);
   }
   return static_cast<int>(plans.size());

@@ -10,7 +10,8 @@ namespace understudy::app {
 
 constexpr int kCreatureFrames = 60;
 
-/// Whether a suite is made here: "creatures", "creatures-captured", "creatures-pairs".
+/// Whether a suite is made here: "creatures", "creatures-captured", "creatures-pairs",
+/// "marionette-gaps".
 bool is_creature_suite(const std::string& suite);
 /// As make_suite. The split "train" has the seeds 0 to 99 of each kind, "dev" 100 to 109, each with one of
 /// the kind's motions in turn; `people`, whose motions are known, are one kind more, ten of them. Throws

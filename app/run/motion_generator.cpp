@@ -50,7 +50,7 @@ std::string hurry_of(const RiggedMotion& known, const GenerationOptions& options
 }
 
 /// As far as a pose is from another: mean distance of joints.
-double pose_distance(const Rig& rig, const RigPose& a, const RigPose& b) {
+double pose_distance(const understudy::Rig& rig, const RigPose& a, const RigPose& b) {
   return static_cast<double>(
       (joint_places(rig, bone_motions(rig, a)) - joint_places(rig, bone_motions(rig, b)))
           .rowwise()
@@ -86,7 +86,7 @@ std::vector<RigPose> made_by_network(const RiggedMotion& known, const Generation
   if (!keys.empty()) {
     std::vector<RigPose> poses = options.paper_sampling ? best_of_many(known, dynamics, keys, rng)
                                                         : dynamics.aimed(keys, dt, kAimSteps, rng);
-    meet_keys(known.rig, known.motion.fps, keys, poses);
+    settle_on_keys(known.rig, known.motion.fps, keys, poses);
     return poses;
   }
   dynamics.begin(known.rig);

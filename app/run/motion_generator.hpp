@@ -40,7 +40,7 @@ struct GenerationOptions {
 };
 
 /// A network that knows how this rig's kind moves. Throws Error (see nn::load_motion_dynamics).
-using DynamicsLoader = std::function<std::unique_ptr<MotionDynamics>(const Rig& rig)>;
+using DynamicsLoader = std::function<std::unique_ptr<MotionDynamics>(const understudy::Rig& rig)>;
 
 struct GeneratedMotion {
   uint64_t seed = 1;

@@ -222,4 +222,8 @@ void stand_on(float ground, const std::vector<std::vector<char>>& touches, Rigge
   standing.bend();
 }
 
+void bend_onto(float ground, const std::vector<std::vector<char>>& touches, RiggedMotion& performance) {
+  Standing(ground, touches, performance).bend();
+}
+
 }  // namespace understudy

@@ -19,5 +19,7 @@ GroundContacts ground_contacts(const RiggedMotion& body);
 /// Poses a performance so that bones which touch stay on the ground: the path first, then the last two bones
 /// of each. touches: [T][J of the performance].
 void stand_on(float ground, const std::vector<std::vector<char>>& touches, RiggedMotion& performance);
+/// The same where the path is right as it is: only the last two bones.
+void bend_onto(float ground, const std::vector<std::vector<char>>& touches, RiggedMotion& performance);
 
 }  // namespace understudy

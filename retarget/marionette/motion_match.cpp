@@ -20,6 +20,7 @@ constexpr double kCoarser = 0.75;       // of the frames, a level
 constexpr float kCompleteness = 0.01f;  // alpha of the bidirectional similarity
 constexpr float kTempo = 0.12f;         // how much faster and slower pieces are played, at most
 constexpr double kTempoSeconds = 1.5;   // of a wave of it
+constexpr float kKeyPull = 2;           // times a patch's other frames together
 constexpr float kKeyNoise = 0.5f;       // standard deviations, between keys
 
 /// Rows at these times, linearly between neighbours.
@@ -81,6 +82,7 @@ class Matcher {
  private:
   void begin(int frames);
   void round();
+  Eigen::MatrixXf distances(const RowMatrix& wanted, const RowMatrix& known) const;
   void put_keys();
   void go_to_keys();
   int on_level(int frame, int level_frames) const;
@@ -116,11 +118,14 @@ void Matcher::begin(int frames) {
     const PoseKey &a = options_.keys[k], &b = options_.keys[k + 1];
     const Eigen::RowVectorXf from = form_.row_of(a.pose), to = form_.row_of(b.pose);
     const int first = on_level(a.frame, frames), last = on_level(b.frame, frames);
+    const float freedom = static_cast<float>(last - first) / static_cast<float>(2 * patch_);
+    const float noise = kKeyNoise * std::min(1.0f, freedom);  // of short ways there are not many
     for (int t = first; t <= last; ++t) {
       const float share = static_cast<float>(t - first) / static_cast<float>(std::max(1, last - first));
       Eigen::RowVectorXf between = (1 - share) * from + share * to;
-      for (Eigen::Index c = 0; c < between.size(); ++c) between[c] += kKeyNoise * spread[c] * rng_.normal();
+      for (Eigen::Index c = 0; c < between.size(); ++c) between[c] += noise * spread[c] * rng_.normal();
       form_.put_pose(between, rows_.row(t));
+      rows_.row(t).head<3>().setZero();  // go_to_keys() says how it goes
     }
   }
 }
@@ -159,9 +164,32 @@ void Matcher::go_to_keys() {
   }
 }
 
+/// Squared, a frame, of windows; frames that keys fix count more, or the many between would decide.
+Eigen::MatrixXf Matcher::distances(const RowMatrix& wanted, const RowMatrix& known) const {
+  const auto frames = static_cast<int>(rows_.rows());
+  Eigen::VectorXf pulls = Eigen::VectorXf::Ones(frames);
+  for (const PoseKey& key : options_.keys)
+    pulls[std::min(on_level(key.frame, frames_), frames - 1)] = kKeyPull * static_cast<float>(patch_);
+  const Eigen::Index width = wanted.cols() / patch_;
+  Eigen::MatrixXf far = Eigen::MatrixXf::Zero(wanted.rows(), known.rows());
+  RowMatrix pulled = wanted, squares(known.rows(), patch_), pull(wanted.rows(), patch_);
+  for (int k = 0; k < patch_; ++k) {
+    squares.col(k) = known.middleCols(k * width, width).rowwise().squaredNorm();
+    for (Eigen::Index i = 0; i < wanted.rows(); ++i) {
+      pull(i, k) = pulls[(i + k) % frames];
+      pulled.row(i).segment(k * width, width) *= pull(i, k);
+    }
+  }
+  far.noalias() = -2.0f * pulled * known.transpose() + pull * squares.transpose();
+  far.colwise() += pulled.cwiseProduct(wanted).rowwise().sum();
+  return far.cwiseMax(0) / static_cast<float>(patch_);
+}
+
 /// Each patch becomes the example's that is nearest by bidirectional similarity; where they overlap they are
 /// blended, the middle of a patch most.
 void Matcher::round() {
+  put_keys();  // patches are chosen by them; what is blended may miss them, evenly, and is bent to them later
+  go_to_keys();
   const Eigen::RowVectorXf& weights = form_.weights();
   const RowMatrix wanted = windows_of(rows_, weights, patch_, options_.loop);
   std::vector<RowMatrix> known;
@@ -177,10 +205,7 @@ void Matcher::round() {
       all.row(ssize(places)) = known[e].row(i);
       places.emplace_back(e, i);
     }
-  Eigen::MatrixXf far = -2.0f * wanted * all.transpose();
-  far.colwise() += wanted.rowwise().squaredNorm();
-  far.rowwise() += all.rowwise().squaredNorm().transpose();
-  far = far.cwiseMax(0) / static_cast<float>(patch_);
+  const Eigen::MatrixXf far = distances(wanted, all);
   const Eigen::RowVectorXf nearest = far.colwise().minCoeff();
   RowMatrix sum = RowMatrix::Zero(rows_.rows(), rows_.cols());
   Eigen::VectorXf pulls = Eigen::VectorXf::Zero(rows_.rows());
@@ -196,8 +221,6 @@ void Matcher::round() {
     }
   }
   rows_ = sum.array().colwise() / pulls.array();
-  put_keys();
-  go_to_keys();
 }
 
 RowMatrix Matcher::made_from(std::vector<RowMatrix> examples) {
@@ -264,17 +287,6 @@ void close_loop(const Rig& rig, double fps, std::vector<RigPose>& poses) {
   meet_keys(rig, fps, {{0, poses.front()}, {static_cast<int>(ssize(poses)) - 1, last}}, poses);
 }
 
-/// Joints about the root, facing +z.
-std::vector<Points> own_places(const Rig& rig, const std::vector<RigPose>& poses) {
-  std::vector<Points> places;
-  for (RigPose pose : poses) {
-    pose.turns[0] = rotation_about_y(-heading_of(pose.turns[0])) * pose.turns[0];
-    pose.root.setZero();
-    places.push_back(joint_places(rig, bone_motions(rig, pose)));
-  }
-  return places;
-}
-
 }  // namespace
 
 RigMotion matched_motion(const Rig& rig, const std::vector<RigMotion>& examples,
@@ -293,7 +305,12 @@ RigMotion matched_motion(const Rig& rig, const std::vector<RigMotion>& examples,
   const RowMatrix made = Matcher(form, options, fps).made_from(std::move(rows));
   const auto first = std::find_if(examples.begin(), examples.end(), enough);
   RiggedMotion performed{rig, form.motion(made, first->poses.front(), fps)};
-  if (rig.surface.vertices.rows() > 0) stand_on(contacts.ground, form.touches(made), performed);
+  meet_keys(rig, fps, options.keys, performed.motion.poses);
+  if (rig.surface.vertices.rows() > 0) {
+    // Between keys the path is known; without, the body goes as those that stand push it.
+    const auto stands = options.keys.empty() ? stand_on : bend_onto;
+    stands(contacts.ground, form.touches(made), performed);
+  }
   if (options.loop) close_loop(rig, fps, performed.motion.poses);
   meet_keys(rig, fps, options.keys, performed.motion.poses);
   return std::move(performed.motion);

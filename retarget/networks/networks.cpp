@@ -14,6 +14,7 @@
 #include "retarget/base/log.hpp"
 #include "retarget/base/program_files.hpp"
 #include "retarget/base/text.hpp"
+#include "retarget/marionette/dynamics_rows.hpp"
 #include "retarget/motion_space/paper_space.hpp"
 #include "retarget/networks/code_transfer.hpp"
 #include "retarget/networks/dense_extractor.hpp"
@@ -21,6 +22,7 @@
 #include "retarget/networks/lifter_network.hpp"
 #include "retarget/networks/network_deformer.hpp"
 #include "retarget/networks/plugin_api.hpp"
+#include "retarget/networks/train_options.hpp"
 #include "retarget/networks/weights_layout.hpp"
 #include "retarget/pipeline/method_table.hpp"
 #include "retarget/pose2d/lift_transfer.hpp"
@@ -243,6 +245,32 @@ std::unique_ptr<KeypointTransfer> load_keypoint_transfer(const NetworkOptions& o
 
 std::unique_ptr<Lifter> load_lifter(const std::string& folder) {
   return load_network_lifter(folder + "/lifter.weights", load_length_reader(folder));
+}
+
+std::unique_ptr<MotionDynamics> load_motion_dynamics(const std::string& place, const Rig& rig) {
+  std::vector<std::string> files = {place};
+  if (fs::is_directory(place)) {
+    files.clear();
+    for (const char* kind : kMarionetteKinds)
+      files.push_back(place + "/marionette_dynamics_" + kind + ".weights");
+  }
+  std::string kinds;
+  for (const std::string& file : files) {
+    if (!fs::exists(file)) continue;
+    const std::string bytes = read_file(file);
+    const StoredWeights stored = parse_weights(bytes, file);
+    const auto text = [&](const char* key) {
+      const auto found = stored.texts.find(key);
+      return found == stored.texts.end() ? std::string() : found->second;
+    };
+    kinds += (kinds.empty() ? "" : ", ") + text("kind");
+    if (text("bones") != bones_of(rig)) continue;
+    auto dynamics = plugin().load_dynamics(file);
+    dynamics->begin(rig);
+    return dynamics;
+  }
+  US_CHECK(!kinds.empty(), place, ": has no weights of how bodies move (marionette_dynamics_person.weights)");
+  throw Error(rig.name + ": its bones are not those of the kinds that a network knows: " + kinds);
 }
 
 RuntimeReport runtime_report() {

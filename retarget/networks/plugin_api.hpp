@@ -8,7 +8,7 @@
 
 namespace understudy::nn {
 
-constexpr int kPluginVersion = 15;
+constexpr int kPluginVersion = 17;
 
 struct PluginApi {
   int version;
@@ -20,6 +20,7 @@ struct PluginApi {
   std::unique_ptr<WordTranslator> (*load_words)(const std::string& path);
   std::unique_ptr<StyleJudge> (*load_style_judge)(const std::string& path);
   std::unique_ptr<KeypointFinder> (*load_keypoints)(const std::string& path, const std::string& method);
+  std::unique_ptr<MotionDynamics> (*load_dynamics)(const std::string& path);
   RuntimeReport (*report)();
   int (*train)(const AnyTrainOptions& options);
 };

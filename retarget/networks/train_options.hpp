@@ -130,11 +130,19 @@ struct MarionettePaperTrainOptions : TrainOptions {
   bool local = true, time = true;  ///< L_local, L_time
 };
 
+/// The dynamics of bodies of one kind. Where there is neither minutes nor samples, as many samples as the
+/// shipped weights saw.
+struct MarionetteDynamicsTrainOptions : TrainOptions {
+  static constexpr const char* kNetwork = "marionette-dynamics";
+  std::string kind = "person";     ///< one of kMarionetteKinds
+  std::string form = "rotations";  ///< or "positions", the paper's baseline
+};
+
 using AnyTrainOptions =
     std::variant<SkeletonTrainOptions, PartTrainOptions, MotionTrainOptions, DeformationTrainOptions,
                  MotionSpaceTrainOptions, StyleTrainOptions, StyleJudgeTrainOptions, ProportionsTrainOptions,
                  Pose2dTrainOptions, LifterTrainOptions, PointsTrainOptions, MarionetteSlotsTrainOptions,
-                 MarionettePaperTrainOptions>;
+                 MarionettePaperTrainOptions, MarionetteDynamicsTrainOptions>;
 
 /// Trains until the minutes or samples are used up, going on from the checkpoint where there is one. 0 when
 /// it came to the end, 1 when it was cancelled. Throws Error.

@@ -5,6 +5,7 @@
 #include <memory>
 #include <string>
 
+#include "retarget/marionette/motion_dynamics.hpp"
 #include "retarget/pipeline/interfaces.hpp"
 #include "retarget/pipeline/keypoint_finder.hpp"
 #include "retarget/pipeline/motion_coder.hpp"
@@ -29,6 +30,9 @@ std::unique_ptr<MotionCoder> load_step_coder(const std::string& path);
 
 /// Translates motion words by the network of paper 4 (WordsPair).
 std::unique_ptr<WordTranslator> load_words(const std::string& path);
+
+/// How bodies of a kind move (RotationVrnn).
+std::unique_ptr<MotionDynamics> load_dynamics(const std::string& path);
 
 /// Judges style by three small networks (JudgeNet).
 std::unique_ptr<StyleJudge> load_judges(const std::string& path);

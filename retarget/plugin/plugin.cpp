@@ -77,8 +77,8 @@ int train_network(const AnyTrainOptions& any) {
 
 const understudy::nn::PluginApi* understudy_networks_plugin() {
   using namespace understudy::nn;
-  static const PluginApi api{kPluginVersion,  send_log_to,  load,        load_inbetween_space,
-                             load_step_coder, load_words,   load_judges, load_keypoints,
-                             report,          train_network};
+  static const PluginApi api{kPluginVersion,  send_log_to, load,         load_inbetween_space,
+                             load_step_coder, load_words,  load_judges,  load_keypoints,
+                             load_dynamics,   report,      train_network};
   return &api;
 }

@@ -158,6 +158,8 @@ int train(const nn::PointsTrainOptions& options);
 int train(const nn::MarionetteSlotsTrainOptions& options);
 /// Samples are windows of ten frames.
 int train(const nn::MarionettePaperTrainOptions& options);
+/// Samples are motions; where the options have no end there is one.
+int train(const nn::MarionetteDynamicsTrainOptions& options);
 /// Of the form "paper"; samples are steps.
 int train_steps(const nn::MotionSpaceTrainOptions& options);
 

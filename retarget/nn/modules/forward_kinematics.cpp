@@ -1,7 +1,6 @@
 #include "retarget/nn/modules/forward_kinematics.hpp"
 
-#include <array>
-
+#include "retarget/base/index.hpp"
 #include "retarget/skeleton/skeleton.hpp"
 
 namespace understudy::nn {
@@ -38,10 +37,15 @@ torch::Tensor rotations_from_quaternions(const torch::Tensor& quaternions) {
 }
 
 PosedBodies forward_kinematics(const torch::Tensor& rest, const torch::Tensor& local) {
+  return forward_kinematics(rest, local, {kParents.begin(), kParents.end()});
+}
+
+PosedBodies forward_kinematics(const torch::Tensor& rest, const torch::Tensor& local,
+                               const std::vector<int>& parents) {
   const int64_t batch = local.size(0);
-  std::array<torch::Tensor, kJointCount> joint, global;
-  for (int j = 0; j < kJointCount; ++j) {
-    const int p = kParents[j];
+  std::vector<torch::Tensor> joint(parents.size()), global(parents.size());
+  for (int j = 0; j < ssize(parents); ++j) {
+    const int p = parents[j];
     const auto R = local.select(2, j);  // [B, T, 3, 3]
     if (p < 0) {
       joint[j] = torch::zeros_like(R.select(-1, 0));  // [B, T, 3]

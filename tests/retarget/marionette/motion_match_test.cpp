@@ -16,7 +16,7 @@ RiggedMotion creature(CreatureKind kind, int motion, int frames) {
 }
 
 const RiggedMotion& walking_dog() {
-  static const RiggedMotion dog = creature(CreatureKind::Quadruped, 0, 120);
+  static const RiggedMotion dog = creature(CreatureKind::Quadruped, 1, 120);
   return dog;
 }
 
@@ -106,6 +106,29 @@ TEST(MotionMatch, MeetsKeysToTheLastBit) {
   const RigMotion made = matched(dog, options);
   for (const PoseKey& key : options.keys) expect_same(made.poses[static_cast<size_t>(key.frame)], key.pose);
   EXPECT_LT(largest_step(dog.rig, made.poses), 2 * largest_step(dog.rig, dog.motion.poses));
+}
+
+TEST(MotionMatch, AShortGapIsFilledAsTheClipWent) {
+  const RiggedMotion& dog = walking_dog();
+  for (const int gap : {4, 8}) {
+    const auto first = dog.motion.poses.begin() + 40, last = first + gap;
+    MatchOptions options;
+    options.frames = gap + 1;
+    options.keys = {{0, *first}, {gap, *last}};
+    const RigMotion made = matched_motion(
+        dog.rig, {{30, {dog.motion.poses.begin(), first + 1}}, {30, {last, dog.motion.poses.end()}}},
+        options);
+    double off = 0;
+    for (int t = 0; t <= gap; ++t)
+      off += static_cast<double>(
+                 (joint_places(dog.rig, bone_motions(dog.rig, made.poses[static_cast<size_t>(t)])) -
+                  joint_places(dog.rig, bone_motions(dog.rig, first[t])))
+                     .rowwise()
+                     .norm()
+                     .mean()) /
+             gap;
+    EXPECT_LT(off, 0.01 * static_cast<double>(box_diagonal(dog.rig.surface.vertices))) << gap;
+  }
 }
 
 TEST(MotionMatch, ALoopEndsInThePoseThatItBeginsWith) {
