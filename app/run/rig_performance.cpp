@@ -13,7 +13,6 @@
 #include "retarget/base/text.hpp"
 #include "retarget/character/gltf_character.hpp"
 #include "retarget/character/read_character.hpp"
-#include "retarget/character/rig_character.hpp"
 #include "retarget/discovery/first_pose.hpp"
 #include "retarget/discovery/rig_figures.hpp"
 #include "retarget/discovery/rig_follower.hpp"
@@ -60,8 +59,14 @@ void check_rig_path(const std::string& path) {
 }
 
 void write_rig(const std::string& path, const RiggedMotion& performed) {
+  write_rig(path, performed.rig, {{"motion", performed.motion}});
+}
+
+void write_rig(const std::string& path, const understudy::Rig& rig, const std::vector<RigClip>& clips) {
   check_rig_path(path);
-  is_rig_file(path) ? write_gltf_character(path, to_character(performed)) : write_rig_bvh(path, performed);
+  if (is_rig_file(path)) return write_gltf_character(path, to_character(rig, clips));
+  US_CHECK(clips.size() == 1, path, ": a .bvh file holds one motion, not ", clips.size());
+  write_rig_bvh(path, {rig, clips[0].motion});
 }
 
 FollowedScans follow_scans(const RiggedMotion& known, Source& source, const std::string& name,

@@ -6,6 +6,7 @@
 
 #include "app/run/report.hpp"
 #include "app/run/source.hpp"
+#include "retarget/character/rig_character.hpp"
 #include "retarget/discovery/discover.hpp"
 #include "retarget/discovery/rig_retarget.hpp"
 
@@ -21,6 +22,8 @@ RiggedMotion read_rig(const std::string& path);
 void check_rig_path(const std::string& path);
 /// By the suffix. Throws Error when it cannot be written.
 void write_rig(const std::string& path, const RiggedMotion& performed);
+/// The same with several motions; as .bvh one alone.
+void write_rig(const std::string& path, const understudy::Rig& rig, const std::vector<RigClip>& clips);
 
 /// A rig laid on scans one after the other, each as it comes.
 struct FollowedScans {

@@ -57,33 +57,42 @@ std::vector<float> turns_of(const RigMotion& motion, size_t joint) {
 }
 
 /// The translations of the root and of sliders; empty of others.
-std::vector<float> translations_of(const RiggedMotion& performed, size_t j, const Vec3& local) {
-  const RigJoint& joint = performed.rig.joints[j];
+std::vector<float> translations_of(const Rig& rig, const RigMotion& motion, size_t j, const Vec3& local) {
+  const RigJoint& joint = rig.joints[j];
   std::vector<float> values;
   if (j > 0 && joint.kind != JointKind::Slider) return values;
-  for (const RigPose& pose : performed.motion.poses) {
+  for (const RigPose& pose : motion.poses) {
     const Vec3 place = j == 0 ? pose.root : Vec3(local + pose.slides[j] * joint.axis);
     values.insert(values.end(), place.begin(), place.end());
   }
   return values;
 }
 
-CharacterAnimation animation_of(const RiggedMotion& performed, const Character& character) {
+CharacterAnimation animation_of(const Rig& rig, const RigClip& clip, const Character& character) {
   CharacterAnimation animation;
-  animation.name = "motion";
+  animation.name = clip.name;
   std::vector<float> times;
-  for (size_t t = 0; t < performed.motion.poses.size(); ++t)
-    times.push_back(static_cast<float>(static_cast<double>(t) / performed.motion.fps));
+  for (size_t t = 0; t < clip.motion.poses.size(); ++t)
+    times.push_back(static_cast<float>(static_cast<double>(t) / clip.motion.fps));
   const auto add = [&](size_t joint, TrackPath path, std::vector<float> values) {
     if (!values.empty())
       animation.tracks.push_back(
           {static_cast<int>(joint), path, TrackInterpolation::Linear, times, std::move(values)});
   };
-  for (size_t j = 0; j < performed.rig.joints.size(); ++j) {
-    add(j, TrackPath::Rotation, turns_of(performed.motion, j));
-    add(j, TrackPath::Translation, translations_of(performed, j, character.nodes[j].local.translation));
+  for (size_t j = 0; j < rig.joints.size(); ++j) {
+    add(j, TrackPath::Rotation, turns_of(clip.motion, j));
+    add(j, TrackPath::Translation,
+        translations_of(rig, clip.motion, j, character.nodes[j].local.translation));
   }
   return animation;
+}
+
+void check_poses(const Rig& rig, const RigMotion& motion) {
+  US_CHECK(motion.poses.empty() || motion.fps > 0, rig.name, ": a motion of ", motion.fps,
+           " frames a second");
+  for (const RigPose& pose : motion.poses)
+    US_CHECK(ssize(pose.turns) == rig.count() && ssize(pose.slides) == rig.count(), rig.name, ": a pose of ",
+             pose.turns.size(), " joints for a rig of ", rig.count());
 }
 
 /// Nodes whose motion the surface knows: bones with a weight, and nodes that carry parts without skin.
@@ -284,13 +293,12 @@ void warn_of_loss(const Character& character, const RiggedMotion& read, int anim
 }  // namespace
 
 Character to_character(const RiggedMotion& performed) {
-  const Rig& rig = performed.rig;
+  return to_character(performed.rig, {{"motion", performed.motion}});
+}
+
+Character to_character(const Rig& rig, const std::vector<RigClip>& clips) {
   check_rig(rig);
-  US_CHECK(performed.motion.poses.empty() || performed.motion.fps > 0, rig.name, ": a motion of ",
-           performed.motion.fps, " frames a second");
-  for (const RigPose& pose : performed.motion.poses)
-    US_CHECK(ssize(pose.turns) == rig.count() && ssize(pose.slides) == rig.count(), rig.name, ": a pose of ",
-             pose.turns.size(), " joints for a rig of ", rig.count());
+  for (const RigClip& clip : clips) check_poses(rig, clip.motion);
   Character character;
   character.name = rig.name;
   CharacterSkin& skin = character.skins.emplace_back();
@@ -311,9 +319,11 @@ Character to_character(const RiggedMotion& performed) {
     const Vec3 color = Vec3::Constant(rig.surface.colors.rows() > 0 ? 1.0f : 0.8f);
     character.materials.push_back(plain_material("surface", color, 1, -1).dump());
   }
-  if (performed.motion.poses.empty()) return character;
-  CharacterAnimation animation = animation_of(performed, character);
-  if (!animation.tracks.empty()) character.animations.push_back(std::move(animation));
+  for (const RigClip& clip : clips) {
+    CharacterAnimation animation = animation_of(rig, clip, character);
+    if (!clip.motion.poses.empty() && !animation.tracks.empty())
+      character.animations.push_back(std::move(animation));
+  }
   return character;
 }
 

@@ -6,9 +6,17 @@
 
 namespace understudy {
 
-/// A node a joint, named as it, and one for the surface; one skin; the motion as one animation with a
+/// One of several motions of a rig, by name.
+struct RigClip {
+  std::string name;
+  RigMotion motion;
+};
+
+/// A node a joint, named as it, and one for the surface; one skin; each motion as an animation with a
 /// rotation track for each joint that turns, and translations of the root and of sliders. Files keep no kinds
 /// of joints: from_character() sees them in the motion. Throws Error for a bad rig, or poses that do not fit.
+Character to_character(const Rig& rig, const std::vector<RigClip>& clips);
+/// The same with one animation, "motion".
 Character to_character(const RiggedMotion& performed);
 
 /// The bones that carry weights or parts, and what those hang on, as a rig in its bind pose, units and axes
