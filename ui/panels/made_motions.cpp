@@ -53,7 +53,7 @@ void draw_between(const MadeDrawing& d) {
   const auto marks = marked(d.session);
   bool on = between.has_value();
   if (toggle_row(d.ui(),
-                 {"generate.between", "Between two frames",
+                 {"generate.between", "Between frames",
                   "Begins in the pose of one frame and ends in that of another"},
                  on)) {
     between.reset();

@@ -5,7 +5,7 @@
 namespace understudy::ui {
 namespace {
 
-constexpr float kPale = 0.4f, kGhostly = 0.75f;  // share of white, opacity
+constexpr float kPale = 0.5f, kGhostly = 0.75f;  // share of white, opacity
 constexpr float kKeptOpacity = 0.95f;            // of what is a clip already
 
 }  // namespace
