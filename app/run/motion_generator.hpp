@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "retarget/base/fields.hpp"
 #include "retarget/marionette/motion_dynamics.hpp"
 #include "retarget/rig/rig.hpp"
 
@@ -28,6 +29,11 @@ const GenerationEngine& generation_engine_named(const std::string& name);
 struct FramesBetween {
   int first = 0, last = 0;
 };
+template <class V, class S>
+FieldsOf<S, FramesBetween> fields(V& visit, S& between) {
+  visit("first", between.first, kFrameNumbers);
+  visit("last", between.last, kFrameNumbers);
+}
 
 struct GenerationOptions {
   int frames = 90;  ///< of each new motion, at the clip's rate
@@ -38,6 +44,17 @@ struct GenerationOptions {
   std::string engine = "match";
   bool paper_sampling = false;  ///< of networks, between poses: the best of many, in place of one that aims
 };
+constexpr Within<uint64_t> kSeeds{0, 1000000000};  ///< in documents
+/// All but the count: what tells one motion.
+template <class V, class S>
+FieldsOf<S, GenerationOptions> fields(V& visit, S& options) {
+  visit("frames", options.frames, Within<int>{2, 10000});
+  visit("between", options.between);
+  visit("loop", options.loop);
+  visit("seed", options.seed, kSeeds);
+  visit("engine", options.engine);
+  visit("paper_sampling", options.paper_sampling);
+}
 
 /// A network that knows how this rig's kind moves. Throws Error (see nn::load_motion_dynamics).
 using DynamicsLoader = std::function<std::unique_ptr<MotionDynamics>(const understudy::Rig& rig)>;

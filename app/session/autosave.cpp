@@ -7,6 +7,7 @@
 #include <optional>
 #include <sstream>
 
+#include "app/run/fields_json.hpp"
 #include "app/session/document_file.hpp"
 #include "retarget/base/error.hpp"
 #include "retarget/base/log.hpp"
@@ -16,8 +17,6 @@
 namespace understudy::app {
 namespace fs = std::filesystem;
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 constexpr const char* kPrefix = "autosave_";
 constexpr const char* kSuffix = ".understudy";

@@ -75,6 +75,11 @@ struct Studio::Background {
   std::string autosave_problem;          // the last one reported
   /// What the second body was last made to perform, or is made to; null: nothing yet.
   std::shared_ptr<SecondBodyJob> second_work;
+  std::shared_ptr<const DiscoveredRig> motions_of;  // the rig that MadeMotionsState is of
+  /// The last ones that made what is offered, and the document's clips; null: none yet.
+  std::shared_ptr<MotionsJob> motions_work, clips_work;
+  /// All that was made, with the rig that it is of; the newest at the end.
+  std::vector<std::pair<std::shared_ptr<const DiscoveredRig>, MadeMotion>> motions;
   std::string flat_key;                // of what is shown of 2D poses, or on its way
   std::shared_ptr<FlatJob> flat_work;  // the last one; null: none yet
   std::string flat_shown;              // the source's part of that key, as it is shown

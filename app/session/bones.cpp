@@ -10,6 +10,7 @@
 #include "retarget/base/log.hpp"
 #include "retarget/discovery/rig_refit.hpp"
 #include "retarget/math/percentile.hpp"
+#include "retarget/metrics/rig_metrics.hpp"
 
 namespace understudy::app {
 
@@ -110,11 +111,16 @@ float size_of(const DiscoveredRig& rig) {
   return sides.norm();
 }
 
-/// The mean distance of each found joint from each of the 22, [J, 22] metres, over the frames that show both;
-/// empty where none does.
-Eigen::MatrixXf distances(const DiscoveredRig& rig, const SharedFrames<KeptSource>& frames) {
+/// Found joints and the 22, over the frames that show both.
+struct Comparison {
+  Eigen::MatrixXf apart;  // [J, 22] metres, mean; empty where no frame does
+  SemanticConsistency consistency;
+};
+
+Comparison compare(const DiscoveredRig& rig, const SharedFrames<KeptSource>& frames) {
   const understudy::Rig& found = rig.found.rig;
   Eigen::MatrixXf sum = Eigen::MatrixXf::Zero(found.count(), kJointCount);
+  Comparison of;
   int seen = 0;
   for (size_t t = 0; t < frames.size(); ++t) {
     const int at = frame_of_rig(rig, static_cast<int>(t));
@@ -123,10 +129,11 @@ Eigen::MatrixXf distances(const DiscoveredRig& rig, const SharedFrames<KeptSourc
         joint_places(found, bone_motions(found, rig.found.motion.poses[static_cast<size_t>(at)]));
     for (int j = 0; j < found.count(); ++j)
       sum.row(j) += (frames[t].joints.rowwise() - places.row(j)).rowwise().norm().transpose();
+    of.consistency.push(places, frames[t].joints);
     ++seen;
   }
-  if (seen == 0) return {};
-  return sum / static_cast<float>(seen);
+  if (seen > 0) of.apart = sum / static_cast<float>(seen);
+  return of;
 }
 
 /// The nearest ones have the names, each of the 22 once.
@@ -143,8 +150,7 @@ void give_names(std::vector<NearJoint>& near) {
   }
 }
 
-std::vector<NearJoint> nearest_joints(const DiscoveredRig& rig, const SharedFrames<KeptSource>& frames) {
-  const Eigen::MatrixXf apart = distances(rig, frames);
+std::vector<NearJoint> nearest_joints(const DiscoveredRig& rig, const Eigen::MatrixXf& apart) {
   std::vector<NearJoint> near(static_cast<size_t>(rig.found.rig.count()));
   if (apart.size() == 0) return near;
   const float size = size_of(rig);
@@ -156,6 +162,13 @@ std::vector<NearJoint> nearest_joints(const DiscoveredRig& rig, const SharedFram
   }
   give_names(near);
   return near;
+}
+
+std::vector<SteadyJoint> steady_joints(const Comparison& of) {
+  std::vector<SteadyJoint> steady;
+  for (const SemanticConsistency::Steadiest& one : of.consistency.joints())
+    steady.push_back({one.keypoint, one.share, of.apart(one.keypoint, ssize(steady))});
+  return steady;
 }
 
 }  // namespace
@@ -290,7 +303,11 @@ void Studio::compare_bones() {
       person ? b.bones_key + key_of(source.generation, source.frames.size()) : std::string();
   if (key == b.near_key) return;
   b.near_key = key;
-  state.near = person ? nearest_joints(*state.rig, source.frames) : std::vector<NearJoint>();
+  state.near.clear(), state.steady.clear();
+  if (!person) return;
+  const Comparison of = compare(*state.rig, source.frames);
+  state.near = nearest_joints(*state.rig, of.apart);
+  state.steady = steady_joints(of);
 }
 
 void Studio::look_for_bones_again() {

@@ -64,6 +64,19 @@ void name_bones(Call& c) {
   }
 }
 
+void export_found(Call& c) {
+  const DiscoveredRig& rig = rig_of(c);
+  const MadeMotionsState& made = c.session.made_motions;
+  std::vector<RigClip> clips;
+  for (size_t i = 0; i < c.document.bones.clips.size() && is_rig_file(c.path(0)); ++i) {
+    const MadeClip& clip = c.document.bones.clips[i];
+    US_CHECK(i < made.clips.size() && made.clips[i], "the clip \"", clip.name, "\" is not made",
+             made.problem.empty() ? " yet" : ": " + made.problem);
+    clips.push_back({clip.name, made.clips[i]->motion});
+  }
+  export_rig(c, {c.session.bones.rig, &rig.found}, std::move(clips));
+}
+
 void add_finding(Commands& commands) {
   commands.add_edit({"bones.find", "Find its own skeleton",
                      "[MOST|auto]: so many bones at most; auto, as many as the motion shows"},
@@ -74,11 +87,9 @@ void add_finding(Commands& commands) {
   });
   commands.add({"bones.select", "Select bone", "BONE|none: by name or number"},
                [](Call& c) { c.session.bones.selected = c.word(0, "bone") == "none" ? -1 : bone(c, 0); });
-  commands.add({"bones.export", "Export the found rig", "PATH: .glb or .gltf; its motion alone as .bvh"},
-               [](Call& c) {
-                 const DiscoveredRig& rig = rig_of(c);
-                 export_rig(c, {c.session.bones.rig, &rig.found});
-               });
+  commands.add({"bones.export", "Export the found rig",
+                "PATH: .glb or .gltf, with the clips that were kept; its motion alone as .bvh"},
+               export_found);
   commands.add_edit({"bones.name_as_joints", "Name bones after a person's joints"}, name_bones);
 }
 
@@ -201,13 +212,18 @@ size_t bone_number(const Call& c, size_t i, const understudy::Rig& rig) {
   return static_cast<size_t>(number);
 }
 
-void export_rig(Call& c, const std::shared_ptr<const RiggedMotion>& rig) {
+void export_rig(Call& c, const std::shared_ptr<const RiggedMotion>& rig, std::vector<RigClip> more) {
   const std::string path = c.path(0);
   check_rig_path(path);
   check_not_read(path, files_read_by(c.document));
   check_writable(path);
   c.studio.jobs().start(
-      "Exporting " + file_name(path), [path, rig](JobControl&) { write_rig(path, *rig); },
+      "Exporting " + file_name(path),
+      [path, rig, more = std::move(more)](JobControl&) {
+        std::vector<RigClip> clips = {{kFoundClip, rig->motion}};
+        clips.insert(clips.end(), more.begin(), more.end());
+        write_rig(path, rig->rig, clips);
+      },
       [&studio = c.studio, path] { studio.notify("Exported " + file_name(path), false, showing(path)); });
   remember_folder(c.studio, path);
 }

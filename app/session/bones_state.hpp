@@ -17,6 +17,13 @@ struct NearJoint {
   bool names = false;  ///< near enough to have its name, and nearer than any other found one
 };
 
+/// The found joint that is the nearest to one of the 22 in most frames (paper 3, eq. 21).
+struct SteadyJoint {
+  int bone = -1;
+  double share = 0;   ///< of the frames that show both
+  float apart_m = 0;  ///< metres, mean over all of these
+};
+
 struct BonesState {
   std::shared_ptr<const DiscoveredRig> rig;  ///< with the document's edits; null: none yet
   std::string problem;                       ///< why there is none, one sentence; empty: no problem
@@ -26,8 +33,9 @@ struct BonesState {
   float share = 0;                           ///< of it that is done, 0 .. 1
   /// What that work has found so far; null: nothing, or it is over.
   std::shared_ptr<const PartsSoFar> so_far;
-  int selected = -1;            ///< joint of the rig
-  std::vector<NearJoint> near;  ///< of each joint; empty: the source is no person
+  int selected = -1;                ///< joint of the rig
+  std::vector<NearJoint> near;      ///< of each joint; empty: the source is no person
+  std::vector<SteadyJoint> steady;  ///< of each of the 22; empty as well where no frame shows both
 };
 
 /// Which frame of what was found belongs to one of the source; -1: none.

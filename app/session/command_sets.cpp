@@ -111,6 +111,7 @@ void add_all_commands(Commands& commands) {
   add_map_commands(commands);
   add_bones_commands(commands);
   add_second_body_commands(commands);
+  add_made_motions_commands(commands);
   add_flat_commands(commands);
   add_program_commands(commands);
 }

@@ -3,6 +3,7 @@
 
 #include "app/session/studio.hpp"
 #include "retarget/base/error.hpp"
+#include "retarget/character/rig_character.hpp"
 
 namespace understudy::app {
 
@@ -19,6 +20,7 @@ void add_study_commands(Commands& commands);
 void add_map_commands(Commands& commands);
 void add_bones_commands(Commands& commands);
 void add_second_body_commands(Commands& commands);
+void add_made_motions_commands(Commands& commands);
 void add_flat_commands(Commands& commands);
 void add_program_commands(Commands& commands);
 void add_all_commands(Commands& commands);
@@ -115,8 +117,9 @@ std::optional<std::string> flat_target_file(const std::string& path);
 const DiscoveredRig& rig_of(const Call& c);
 /// A bone of a rig by name or number. Throws Error where it has no such bone.
 size_t bone_number(const Call& c, size_t i, const understudy::Rig& rig);
-/// Writes a rig to the call's path, in the background. Throws Error where that cannot be.
-void export_rig(Call& c, const std::shared_ptr<const RiggedMotion>& rig);
+/// Writes a rig to the call's path, in the background; `more`: clips beside its motion, of glTF alone. Throws
+/// Error where that cannot be.
+void export_rig(Call& c, const std::shared_ptr<const RiggedMotion>& rig, std::vector<RigClip> more = {});
 
 /// The folder that a file or folder was opened from or saved in, for the next time; not that of the samples.
 void remember_folder(Studio& studio, const std::string& path);

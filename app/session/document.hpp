@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "app/run/method.hpp"
+#include "app/run/motion_generator.hpp"
 #include "app/run/source.hpp"
 #include "app/run/target_file.hpp"
 #include "app/session/flat_document.hpp"
@@ -73,12 +74,25 @@ FieldsOf<S, SecondBody> fields(V& visit, S& second) {
   visit("matches", second.matches);
 }
 
+/// A further motion of what was found, as a recipe: the same is made again.
+struct MadeClip {
+  std::string name;       ///< in the rig's file, where the found motion is kFoundClip
+  GenerationOptions how;  ///< one motion, between frames of the source
+};
+template <class V, class S>
+FieldsOf<S, MadeClip> fields(V& visit, S& clip) {
+  visit("name", clip.name);
+  visit("how", clip.how);
+}
+constexpr const char* kFoundClip = "motion";
+
 /// The skeleton of its own that is found in the source's scans, as a recipe: the same is found again.
 struct OwnBones {
   bool wanted = false;
   int most = 0;                ///< bones at most; 0: as many as the motion shows
   std::vector<RigEdit> edits;  ///< of what is found, one after the other
   SecondBody second{};
+  std::vector<MadeClip> clips{};  ///< that were kept of those made
 };
 template <class V, class S>
 FieldsOf<S, OwnBones> fields(V& visit, S& bones) {
@@ -86,6 +100,7 @@ FieldsOf<S, OwnBones> fields(V& visit, S& bones) {
   visit("most", bones.most, Within<int>{0, kMostBones});
   visit("edits", bones.edits);
   visit("second", bones.second);
+  visit("clips", bones.clips);
 }
 
 struct Document {

@@ -18,6 +18,7 @@
 #include "app/session/flat_state.hpp"
 #include "app/session/history.hpp"
 #include "app/session/kept_owners.hpp"
+#include "app/session/made_motions_state.hpp"
 #include "app/session/map_state.hpp"
 #include "app/session/playback.hpp"
 #include "app/session/second_body_state.hpp"
@@ -188,6 +189,7 @@ struct Session {
   MapState map;
   BonesState bones;
   SecondBodyState second;
+  MadeMotionsState made_motions;
   StylesState styles;
   View view;
   Playback playback;

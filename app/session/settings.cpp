@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
-#include <nlohmann/json.hpp>
 
+#include "app/run/fields_json.hpp"
 #include "retarget/base/error.hpp"
 #include "retarget/base/file.hpp"
 #include "retarget/base/log.hpp"
@@ -15,8 +15,6 @@
 namespace understudy::app {
 namespace fs = std::filesystem;
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 constexpr size_t kMostRecent = 12;
 constexpr int64_t kLargestFile = 1 << 20;

@@ -366,6 +366,7 @@ void Studio::tick(double seconds, double played) {
   if (edits.trim && trimmed.out < 0) trimmed.out = edits.trim->last;
   const double length =
       takes ? length_at(session_.takes[session_.selected_take].times, session_.source.fps, trimmed.frame) : 1;
+  const double before = trimmed.frame;
   advance(trimmed, played, session_.source.fps / length, count, edits.skip);
   // A new target, and a scan that is cropped, start without frames: the place is kept until it comes there.
   const auto& source = session_.source;
@@ -373,6 +374,7 @@ void Studio::tick(double seconds, double played) {
       std::max<int64_t>(source.count.value_or(0), static_cast<int64_t>(source.frames.size()));
   const double comes = static_cast<double>(std::max<int64_t>(count, known));
   session_.playback.frame = std::clamp(trimmed.frame, 0.0, std::max(0.0, comes - 1e-3));
+  if (trimmed.playing && trimmed.frame < before) ++session_.made_motions.laps;
   session_.playback.playing = trimmed.playing;
   if (session_.view.turntable_deg_s != 0)
     for (CameraState& camera : session_.view.cameras)

@@ -17,6 +17,7 @@ namespace understudy::app {
 struct SourceFrames;
 struct BonesJob;
 struct SecondBodyJob;
+struct MotionsJob;
 struct FlatJob;
 
 /// Where the networks come from: the program passes the trained ones, tests their own.
@@ -29,6 +30,7 @@ struct StudioServices {
   /// what reads proportions off 2D poses; called off the UI thread, once
   std::function<std::shared_ptr<const LengthReader>()> lengths;
   FlatEngineMaker flat_engine;           ///< as FlatTools have it; called off the UI thread
+  DynamicsLoader dynamics;               ///< of how bodies of a kind move; called off the UI thread
   std::function<std::string()> weights;  ///< checksums, for documents; called off the UI thread
   std::string samples;                   ///< folder of the bundled samples; empty: none
   std::string program;                   ///< that shows a study; empty: this one, once more
@@ -105,6 +107,8 @@ class Studio {
 
   /// Reads the second body once more where it did not come to perform.
   void perform_again();
+  /// Makes `how.count` motions of the found rig, which are offered then. Throws Error where they cannot be.
+  void make_motions(const GenerationOptions& how);
 
  private:
   struct Background;
@@ -136,6 +140,13 @@ class Studio {
   void follow_second_body();
   void start_second_body();
   void take_in_second_body(SecondBodyJob& work);
+  void follow_made_motions();
+  std::shared_ptr<const GeneratedMotion> kept_motion(const GenerationOptions& how) const;
+  std::shared_ptr<MotionsJob> motions_job(std::vector<GenerationOptions> wanted) const;
+  void start_clips(std::vector<GenerationOptions> missing);
+  void keep_made(const MotionsJob& work);
+  void take_in_clips(MotionsJob& work);
+  void take_in_motions(MotionsJob& work);
   void follow_flat();
   void start_flat(std::string key);
   void take_in_flat(FlatJob& work);

@@ -536,6 +536,7 @@ void Studio::take_in_results() {
   offer_fills();
   follow_bones();
   follow_second_body();
+  follow_made_motions();
   follow_flat();
   measure_finished();
 }

@@ -160,9 +160,10 @@ struct View {
   std::string metric = "confidence";                  ///< plotted in the timeline
   bool steps = true;                                  ///< marked there
   BoneSurface bone_surface = BoneSurface::Off;
-  std::vector<CanvasView> canvases;  ///< one per pane; missing ones show the whole canvas
-  bool lifted = false;               ///< a source of 2D poses is seen in space, as lifted
-  float reference = 0.45f;           ///< how bright the picture behind a flat take is
+  BoneSurface made_motions = BoneSurface::Beside;  ///< the found body in further motions
+  std::vector<CanvasView> canvases;                ///< one per pane; missing ones show the whole canvas
+  bool lifted = false;                             ///< a source of 2D poses is seen in space, as lifted
+  float reference = 0.45f;                         ///< how bright the picture behind a flat take is
 };
 template <class V, class S>
 FieldsOf<S, View> fields(V& visit, S& view) {
@@ -189,6 +190,7 @@ FieldsOf<S, View> fields(V& visit, S& view) {
   visit("metric", view.metric);
   visit("steps", view.steps);
   visit("bone_surface", view.bone_surface, kBoneSurfaceNames);
+  visit("made_motions", view.made_motions, kBoneSurfaceNames);
   visit("canvases", view.canvases);
   visit("lifted", view.lifted);
   visit("reference", view.reference, Clamped<float>{0, 1});

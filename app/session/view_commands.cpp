@@ -4,6 +4,7 @@
 
 #include "app/session/command_sets.hpp"
 #include "app/session/follow.hpp"
+#include "app/session/made_motions.hpp"
 #include "retarget/base/error.hpp"
 #include "retarget/base/index.hpp"
 #include "retarget/base/text.hpp"
@@ -121,6 +122,11 @@ void add_bodies_beside(Extent& all, const Session& session, int frame, const Vec
   };
   if (session.view.bone_surface == BoneSurface::Beside) add(session.bones.rig->found, painted_place(session));
   if (session.second.performed) add(*session.second.performed, second_place(session));
+  const understudy::Rig& rig = session.bones.rig->found.rig;
+  for (const ShownMotion& one : shown_motions(session, frame)) {
+    const Points posed = skinned(rig.surface.vertices, rig.skin, bone_motions(rig, *one.pose));
+    add_points(all, posed, offset - one.place);
+  }
 }
 
 /// What a pane draws: the surface; the joints where there is none.

@@ -119,6 +119,12 @@ std::string second_bones(const Session& session) {
   return std::to_string(performed ? performed->rig.count() : 0);
 }
 
+/// Of the found rig those that are there, of the document's.
+std::string clips(const Session& session) {
+  const auto& made = session.made_motions.clips;
+  return std::to_string(made.size() - static_cast<size_t>(std::count(made.begin(), made.end(), nullptr)));
+}
+
 using Facts = std::vector<std::pair<std::string, std::string>>;
 
 /// Of how the selected take is performed.
@@ -161,6 +167,8 @@ std::vector<std::pair<std::string, std::string>> facts(const Session& session) {
       {"bone_weights", bone_weights(session)},
       {"second_bones", second_bones(session)},
       {"second_matches", count(session.document.bones.second.matches.size())},
+      {"made_motions", count(session.made_motions.offered.size())},
+      {"clips", clips(session)},
       {"bones_stage", session.bones.job != 0 ? session.bones.stage : "none"},
       {"people", count(session.source.people.size())},
       {"person", std::to_string(session.source.person)},

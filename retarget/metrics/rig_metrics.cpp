@@ -308,6 +308,16 @@ void SemanticConsistency::push(const Points& keypoints, const Points& joints) {
   ++frames_;
 }
 
+std::vector<SemanticConsistency::Steadiest> SemanticConsistency::joints() const {
+  std::vector<Steadiest> of;
+  for (Eigen::Index j = 0; j < nearest_.rows(); ++j) {
+    Eigen::Index keypoint = 0;
+    const double frames = nearest_.row(j).maxCoeff(&keypoint);
+    of.push_back({static_cast<int>(keypoint), frames / frames_});
+  }
+  return of;
+}
+
 double SemanticConsistency::value() const {
   return frames_ > 0 ? nearest_.rowwise().maxCoeff().mean() / frames_ : kNaN;
 }

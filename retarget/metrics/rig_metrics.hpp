@@ -85,7 +85,14 @@ class SemanticConsistency {
  public:
   /// keypoints [K, 3], joints [J, 3]. Throws Error for other numbers than before, or none.
   void push(const Points& keypoints, const Points& joints);
-  /// Mean over joints of the largest share of frames that one keypoint is the nearest in; NaN before any.
+  /// The keypoint that is the nearest to a joint in most frames, and their share.
+  struct Steadiest {
+    int keypoint = -1;
+    double share = 0;
+  };
+  /// [J]; nothing before any frame.
+  std::vector<Steadiest> joints() const;
+  /// Mean over joints of that share; NaN before any.
   double value() const;
 
  private:

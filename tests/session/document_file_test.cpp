@@ -144,7 +144,7 @@ TEST(DocumentFile, OfTheProgramOfBeforeOpensAndIsWrittenAlike) {
   }
   auto& view = written["view"];
   for (const char* added : {"cube", "overlay", "light", "background", "background_color", "ghosts_by_time",
-                            "steps", "bone_surface", "canvases", "lifted", "reference"})
+                            "steps", "bone_surface", "made_motions", "canvases", "lifted", "reference"})
     view.erase(added);
   for (const char* layers : {"source", "take"})
     for (const char* added : {"wireframe", "scene", "bones"}) view[layers].erase(added);

@@ -128,6 +128,16 @@ const Changes& document_changes() {
       CHANGE(bones.edits[0] = FitAgain{}),
       CHANGE(bones.second.path += "x"),
       CHANGE(bones.second.matches.push_back({"arm", "leg"})),
+      CHANGE(bones.clips.pop_back()),
+      CHANGE(bones.clips[0].name = "other"),
+      CHANGE(bones.clips[0].how.frames = 3),
+      CHANGE(bones.clips[0].how.between->first = 4),
+      CHANGE(bones.clips[0].how.between->last = 4),
+      CHANGE(bones.clips[0].how.between.reset()),
+      CHANGE(bones.clips[0].how.loop = false),
+      CHANGE(bones.clips[0].how.seed = 2),
+      CHANGE(bones.clips[0].how.engine = "match"),
+      CHANGE(bones.clips[0].how.paper_sampling = false),
       CHANGE(takes.pop_back()),
       TAKE(name = "other"),
       TAKE(person = "7"),
@@ -250,7 +260,11 @@ const Changes& document_changes() {
       FlatTake();
   [[maybe_unused]] const auto& [bone, pixels, locked] = ChosenLength();
   [[maybe_unused]] const auto& [canvas_x, canvas_y, zoom] = CanvasView();
-  [[maybe_unused]] const auto& [wanted, most, bone_edits, second] = OwnBones();
+  [[maybe_unused]] const auto& [wanted, most, bone_edits, second, clips] = OwnBones();
+  [[maybe_unused]] const auto& [clip_name, clip_how] = MadeClip();
+  [[maybe_unused]] const auto& [made_frames, between, made_loop, seed, count, made_engine, paper_sampling] =
+      GenerationOptions();
+  [[maybe_unused]] const auto& [between_first, between_last] = FramesBetween();
   [[maybe_unused]] const auto& [second_path, matches] = SecondBody();
   [[maybe_unused]] const auto& [path, motion, betas, fps, import, follow, as_scan, clip, source_bones, quiet,
                                 with_truth, person, times, complete, markers, made, people, recipe,
@@ -296,8 +310,8 @@ const Changes& document_changes() {
   [[maybe_unused]] const auto& [first, last] = Trim();
   [[maybe_unused]] const auto& [layout, linked, cameras, follows, turntable, of_source, of_take, pane,
                                 weights_joint, trails, ghosts, step, by_time, scale, wipe, cube, overlay,
-                                light, background, background_color, metric, steps, bone_surface, canvases,
-                                lifted, reference] = View();
+                                light, background, background_color, metric, steps, bone_surface,
+                                made_motions, canvases, lifted, reference] = View();
   [[maybe_unused]] const auto& [of_scan, of_skeletons, of_results, spread] = OverlayLook();
   [[maybe_unused]] const auto& [light_turn, light_height, brightness] = LightLook();
   [[maybe_unused]] const auto& [at, yaw_rad, pitch, distance, fov, orthographic] = CameraState();

@@ -105,6 +105,7 @@ View view() {
   view.metric = "foot_skate";
   view.steps = false;
   view.bone_surface = BoneSurface::Beside;
+  view.made_motions = BoneSurface::Over;
   view.canvases = {{0.25f, 0.75f, 2}, {}};
   view.lifted = true;
   view.reference = 0.75f;
@@ -140,8 +141,11 @@ SavedDocument full_document(const std::string& folder) {
   saved.document.scan_edits = scan_edits();
   saved.document.skeleton_edits = {DragEdit{7, RightAnkle, Vec3(0.01f, 0.02f, -0.03f), 9, true},
                                    SwapEdit{10, 20, SwapEdit::Limbs::Legs}};
-  saved.document.bones = {
-      true, 12, rig_edits(), {folder + "/an other.glb", {{"tail", "tail 2"}, {"horn", ""}}}};
+  saved.document.bones = {true,
+                          12,
+                          rig_edits(),
+                          {folder + "/an other.glb", {{"tail", "tail 2"}, {"horn", ""}}},
+                          {{"trot", {40, FramesBetween{3, 17}, true, 7, 1, "vrnn", true}}}};
   saved.document.takes = {take(folder), Take{}};
   saved.document.takes[1].target.path = folder + "/b.glb";
   saved.document.source.layout = "coco17", saved.document.source.canvas = "1280x720";

@@ -312,6 +312,12 @@ TEST_F(Bones, OfAPersonGetTheNamesOfTheJointsTheyAreNear) {
   ASSERT_EQ(session.bones.near.size(), 2u) << "compared with the person that is seen";
   EXPECT_GE(session.bones.near[1].joint, 0);
   EXPECT_GT(session.bones.near[1].apart_m, 0);
+  ASSERT_EQ(session.bones.steady.size(), static_cast<size_t>(kJointCount));
+  for (const SteadyJoint& one : session.bones.steady) {
+    EXPECT_TRUE(one.bone == 0 || one.bone == 1);
+    EXPECT_TRUE(one.share >= 0.5 && one.share <= 1) << "one of two is the nearest in half of the frames";
+    EXPECT_GE(one.apart_m + 1e-6f, session.bones.near[static_cast<size_t>(one.bone)].apart_m);
+  }
   session.bones.near[1] = {LeftElbow, 0.01f, 0.01f, true};
   session.bones.near[0] = {Pelvis, 0.5f, 0.5f, false};
   studio.run("bones.name_as_joints");

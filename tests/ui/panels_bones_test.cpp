@@ -107,8 +107,10 @@ TEST_F(BonesPanel, TellsWhoIsNearWhomAndGivesNames) {
   EXPECT_FALSE(shown("bones.name_as_joints")) << "the source is no person";
   session.bones.near = {
       {Pelvis, 0.02f, 0.01f, true}, {LeftKnee, 0.03f, 0.02f, true}, {Head, 0.9f, 0.5f, false}};
+  session.bones.steady.assign(kJointCount, {0, 0.5, 0.02f});
+  session.bones.steady[1] = {2, 1, 0.03f};
   frame(2);
-  expect_click("bones.near.1", {"bones.select 1"});
+  expect_click("bones.near.1", {"bones.select 2"});
   expect_click("bones.name_as_joints", {"bones.name_as_joints"});
 }
 

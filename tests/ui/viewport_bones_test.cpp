@@ -76,6 +76,29 @@ TEST_F(BonesScene, TheChosenOneIsBrightAndAloneInColour) {
   EXPECT_NE(own, others);
 }
 
+TEST_F(BonesScene, OfferedMotionsArePaleGhostsBesideEachOther) {
+  session.view.bone_surface = app::BoneSurface::Over;
+  const size_t alone = scene().meshes.size();
+  for (const uint64_t seed : {1, 2}) {
+    auto made = std::make_shared<app::GeneratedMotion>();
+    made->seed = seed, made->motion.poses = session.bones.rig->found.motion.poses;
+    app::MadeMotion one{{}, made};
+    one.how.seed = seed;
+    session.made_motions.offered.push_back(one);
+  }
+  const render::Scene both = scene();
+  ASSERT_EQ(both.meshes.size(), alone + 2);
+  const render::MeshView &first = both.meshes[alone], &second = both.meshes[alone + 1];
+  EXPECT_NE(first.color, second.color);
+  EXPECT_TRUE(first.opacity < 1 && second.opacity < 1);
+  EXPECT_LT((*second.vertices)(0, 0), (*first.vertices)(0, 0) - 0.2f);
+  EXPECT_LT((*first.vertices)(0, 0), (*both.meshes[0].vertices)(0, 0) - 0.2f);
+  EXPECT_EQ(scene().meshes[alone].vertices.pointer(), first.vertices.pointer()) << "made once a frame";
+  session.view.made_motions = app::BoneSurface::Off;
+  EXPECT_EQ(scene().meshes.size(), alone);
+  EXPECT_EQ(memory.made.size(), 0u);
+}
+
 TEST_F(BonesScene, ABoneThatIsBeingTurnedIsSeenTurned) {
   session.view.bone_surface = app::BoneSurface::Over;
   const render::Scene before = scene();

@@ -117,6 +117,11 @@ ImVec4 bone_color(int bone) {
   return {of.x(), of.y(), of.z(), 1};
 }
 
+ImVec4 made_color(uint64_t seed) {
+  constexpr uint64_t kFirst = 3;  // the others are white, slate, and nearly the selected bone's yellow
+  return bone_color(static_cast<int>(kFirst + seed % (render::kCategories.size() - kFirst)));
+}
+
 ImU32 color(const ImVec4& color, float opacity) {
   ImVec4 c = color;
   c.w *= opacity * ImGui::GetStyle().Alpha;

@@ -31,6 +31,8 @@ ImVec4 person_color(const Theme& theme, int number);
 
 /// Of a found bone, in lists and views; one of 22.
 ImVec4 bone_color(int bone);
+/// Of a motion that was made with that seed, as distinct.
+ImVec4 made_color(uint64_t seed);
 
 /// Measures and colours for ImGui. `scale` is 1 to 3.
 void apply(const Theme& theme, float scale, ImGuiStyle& style);

@@ -7,11 +7,15 @@
 // bones.trim, bones.fit; bones.near.K, bones.name_as_joints; bones.export, bones.drop.
 // The second body, in second_body.cpp: bones.second; bones.perform, bones.perform.work (.cancel),
 // bones.match.K (.I, its choices), bones.perform_export, bones.perform_drop.
+// Further motions, in made_motions.cpp: bones.made; generate.frames, .between, .first, .last, .marks, .loop,
+// .count, .seed, .engine, .make, generate.work (.cancel), generate.ghosts, generate.offered.K, generate.clear,
+// generate.clips.K, generate.name, generate.remove.
 #include <algorithm>
 #include <array>
 
 #include "retarget/base/index.hpp"
 #include "retarget/base/text.hpp"
+#include "ui/panels/made_motions.hpp"
 #include "ui/panels/panels.hpp"
 #include "ui/panels/rows.hpp"
 #include "ui/panels/second_body.hpp"
@@ -271,26 +275,39 @@ void draw_motion(const BonesDrawing& d) {
              {"bones.fit", "Fit to the scans again", "Poses of all frames, with the bones as they are now"});
 }
 
-/// The 22 joints of a person and the found ones, in one table.
+/// Share of frames in which the same found joint is the nearest, as a mean over the 22 (paper 3's SC).
+std::string consistency_words(const BonesDrawing& d) {
+  double sum = 0;
+  for (const app::SteadyJoint& one : d.bones().steady) sum += one.share;
+  return printed("%.0f %% of frames, K = %d", 100 * sum / static_cast<double>(ssize(d.bones().steady)),
+                 d.rig().count());
+}
+
+/// Of each of the 22 joints of a person the found one that is the nearest to it in most frames.
 void draw_near(const BonesDrawing& d) {
   const std::vector<app::NearJoint>& near = d.bones().near;
-  if (near.empty() || !section(d.ui(), "bones.near", "Nearest joint of a person")) return;
+  const std::vector<app::SteadyJoint>& steady = d.bones().steady;
+  if (steady.empty() || !section(d.ui(), "bones.near", "Nearest to a person's joints")) return;
+  row_text(d.ui(), "Consistency", consistency_words(d));
   {
     const float line = ImGui::GetTextLineHeight() + 2 * ImGui::GetStyle().CellPadding.y;
-    Table table(d.ui(), "bones.near", {{"Bone"}, {"Joint"}, {"mm", 44, true}, {"%", 44, true}},
-                line * (static_cast<float>(std::min<std::ptrdiff_t>(ssize(near), 12)) + 1.6f));
-    for (size_t j = 0; table.open() && j < near.size(); ++j) {
-      if (table.row(static_cast<int>(j) == d.bones().selected))
-        d.context.ask("bones.select", {std::to_string(j)});
-      table.cell(d.rig().joints[j].name);
-      table.cell(near[j].joint < 0
-                     ? "\u2013"
-                     : (near[j].names ? joint_label(near[j].joint) : "(" + joint_label(near[j].joint) + ")"));
-      table.cell(near[j].joint < 0 ? "" : printed("%.0f", 1000 * static_cast<double>(near[j].apart_m)));
-      table.cell(near[j].joint < 0 ? "" : printed("%.1f", 100 * static_cast<double>(near[j].share)));
+    Table table(d.ui(), "bones.near", {{"Joint"}, {"Nearest bone"}, {"mm", 44, true}, {"Same, %", 60, true}},
+                line * 12 + 0.6f * line);
+    for (int i = 0; table.open() && i < ssize(steady); ++i) {
+      const auto& [bone, share, apart_m] = steady[static_cast<size_t>(i)];
+      if (table.row(bone == d.bones().selected)) d.context.ask("bones.select", {std::to_string(bone)});
+      const app::NearJoint* const one = at_or_null(near, bone);
+      const std::string& name = d.rig().joints[static_cast<size_t>(bone)].name;
+      table.cell(joint_label(i));
+      table.cell(one != nullptr && one->names && one->joint == i ? name : "(" + name + ")");
+      table.cell(printed("%.0f", 1000 * static_cast<double>(apart_m)));
+      table.cell(printed("%.0f", 100 * share));
     }
   }
-  hint(d.ui(), "In brackets: another bone is nearer to it, or this one is too far.");
+  hint(d.ui(),
+       "Same: the share of frames in which this bone is the nearest to the joint. Few bones (K) score "
+       "easily.");
+  hint(d.ui(), "In brackets: it is nearer to another joint, or too far to have this one's name.");
   const bool any = std::any_of(near.begin(), near.end(), [](const app::NearJoint& one) { return one.names; });
   ask_button(d.context,
              {"bones.name_as_joints", "Give them the joints' names",
@@ -316,6 +333,7 @@ void draw_bones(const app::Session& session, PanelContext& context) {
   draw_all(d);
   draw_one(d);
   draw_motion(d);
+  draw_made_motions(session, context);
   draw_near(d);
   draw_second_body(session, context);
   ask_button(context, {"bones.drop", "Drop these bones", "Can be undone"});

@@ -18,7 +18,8 @@ namespace {
 constexpr MouseUse kInViews[] = {
     {"Left or right drag", "Turns the view"}, {"Middle, Shift+middle or Shift+left drag", "Moves the view"},
     {"Wheel", "Zooms to the pointer"},        {"Double click", "Centres the view there"},
-    {"Ctrl+right drag", "Turns the light"},   {"Right click", "Opens a menu of what can be done there"}};
+    {"Ctrl+right drag", "Turns the light"},   {"Right click", "Opens a menu of what can be done there"},
+    {"Click a made motion", "Keeps it"}};
 constexpr MouseUse kInTimeline[] = {{"Click or drag", "Goes to the frame"},
                                     {"Drag a diamond or a bar", "Moves the edit"},
                                     {"Drag an end of a bar", "Lengthens or shortens it"},

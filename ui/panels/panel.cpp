@@ -118,7 +118,8 @@ bool possible(const app::Session& session, const std::string& command) {
   if (starts_with(command, "study."))
     return command == "study.open" || command == "study.new" || session.study.study.has_value();
   if (command == "bones.find") return source;
-  if (starts_with(command, "bones.")) return session.bones.rig != nullptr;
+  if (starts_with(command, "bones.") || starts_with(command, "generate."))
+    return session.bones.rig != nullptr;
   for (const char* of_source :
        {"source.", "edit.crop", "edit.floor_removal", "edit.cluster", "edit.clean_up"})
     if (starts_with(command, of_source)) return source;

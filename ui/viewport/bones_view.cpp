@@ -18,9 +18,8 @@ using app::Session;
 const Vec3 kFoundColor(0.0f, 0.62f, 0.45f);  // Okabe and Ito's green: no side of a person has it
 const Vec3 kSelectedColor(0.98f, 0.80f, 0.15f);
 const Vec3 kUnselected(0.62f, 0.64f, 0.67f);  // of the surface, where one bone is chosen
-const Vec3 kPlain(0.77f, 0.74f, 0.71f);
-constexpr float kAdult = 2;            // diagonal of an adult's box, metres
-constexpr float kBesideJoints = 0.6f;  // of the thickness, where a person's joints are shown too
+constexpr float kAdult = 2;                   // diagonal of an adult's box, metres
+constexpr float kBesideJoints = 0.6f;         // of the thickness, where a person's joints are shown too
 
 struct Box3 {
   Vec3 low = Vec3::Zero(), high = Vec3::Zero();
@@ -125,7 +124,7 @@ void add_painted(const BonesInput& in, BonesMemory& memory, render::Scene& scene
     memory.frame = frame, memory.offset = offset, memory.preview = in.preview;
     place_surface(found, skin, *pose, memory);
   }
-  add_surface(found.surface, memory, scene);
+  add_surface(found.surface, memory, {}, scene);
 }
 
 /// Where the scan of the frame stands, whichever frame it was found in.
@@ -180,17 +179,17 @@ void place_surface(const understudy::Rig& rig, const SkinWeights& skin, const Ri
   if (!rig.surface.is_cloud()) memory.normals = vertex_normals(posed, rig.surface.faces);
 }
 
-void add_surface(const Mesh& mesh, const BonesMemory& memory, render::Scene& scene) {
+void add_surface(const Mesh& mesh, const BonesMemory& memory, const BodyLook& look, render::Scene& scene) {
   if (mesh.is_cloud()) {
     render::PointsView points;
     points.positions = memory.vertices, points.colors = memory.colors;
-    points.color = kPlain;
+    points.color = look.color, points.opacity = look.opacity;
     if (memory.spacing > 0) points.radius = 1.1f * memory.spacing;
     return scene.clouds.push_back(std::move(points));
   }
   render::MeshView view;
   view.vertices = memory.vertices, view.normals = memory.normals, view.colors = memory.colors;
-  view.faces = memory.faces, view.color = kPlain;
+  view.faces = memory.faces, view.color = look.color, view.opacity = look.opacity;
   scene.meshes.push_back(std::move(view));
 }
 

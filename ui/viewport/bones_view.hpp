@@ -53,8 +53,12 @@ bool bones_hide_scan(const app::Session& session, const PaneContent& pane, int f
 /// Where a body's surface is in a pose, shifted by the memory's offset.
 void place_surface(const understudy::Rig& rig, const SkinWeights& skin, const RigPose& pose,
                    BonesMemory& memory);
+struct BodyLook {
+  Vec3 color = Vec3(0.77f, 0.74f, 0.71f);  ///< where the memory has none for each vertex
+  float opacity = 1;
+};
 /// A body's surface, of which all but the pose is kept in the memory.
-void add_surface(const Mesh& mesh, const BonesMemory& memory, render::Scene& scene);
+void add_surface(const Mesh& mesh, const BonesMemory& memory, const BodyLook& look, render::Scene& scene);
 /// Each bone's colour, mixed by weights [V, J]; where one is chosen, its own alone. [V, 3]
 Points surface_colors(const RowMatrix& weights, int selected);
 struct BonesLook {

@@ -239,12 +239,18 @@ std::optional<render::SurfaceHit> take_under(const Session& session, const PaneC
   return render::surface_under(ray, posed->vertices, mesh.faces);
 }
 
-std::optional<render::SurfaceHit> found_under(const Session& session, const BonesMemory& drawn,
-                                              const render::Ray& ray) {
-  if (!session.bones.rig || drawn.of != session.bones.rig || drawn.vertices->rows() == 0) return std::nullopt;
-  const Mesh& rest = session.bones.rig->found.rig.surface;
+/// Where a ray meets a body of that surface where it was drawn last, of a cloud its point.
+std::optional<render::SurfaceHit> body_under(const Mesh& rest, const BonesMemory& drawn,
+                                             const render::Ray& ray) {
+  if (drawn.vertices->rows() == 0) return std::nullopt;
   return rest.is_cloud() ? point_under(*drawn.vertices, ray)
                          : render::surface_under(ray, *drawn.vertices, rest.faces);
+}
+
+std::optional<render::SurfaceHit> found_under(const Session& session, const BonesMemory& drawn,
+                                              const render::Ray& ray) {
+  if (!session.bones.rig || drawn.of != session.bones.rig) return std::nullopt;
+  return body_under(session.bones.rig->found.rig.surface, drawn, ray);
 }
 
 std::string value_under(const Session& session, const Pane& pane, const ImVec2& at) {
@@ -273,6 +279,24 @@ int bone_under(const Session& session, const Pane& pane, const ImVec2& at) {
   constexpr float kBoneReach = 9;  // pixels
   const auto bones = posed_bones(session, pane.content, pane.keeper.pictures().frame);
   return bones ? bone_at(pane.view.shifted(aside(session, pane.content, 0)), *bones, at, kBoneReach) : -1;
+}
+
+std::optional<uint64_t> offered_under(const Session& session, const Pane& pane, const ImVec2& at) {
+  if (!pane.content.source) return std::nullopt;
+  const render::Ray ray = pane.view.ray(at);
+  std::optional<uint64_t> seed;
+  float least = 0;
+  for (const app::ShownMotion& one : app::shown_motions(session, pane.keeper.pictures().frame)) {
+    const BonesMemory* const drawn = pane.memory.made.find(one.made.get());
+    if (drawn == nullptr) continue;
+    const auto hit = body_under(session.bones.rig->found.rig.surface, *drawn, ray);
+    if (!hit) continue;
+    const float away = (hit->position - ray.origin).norm();
+    if (seed && away >= least) continue;
+    least = away;
+    seed = one.clip < 0 ? std::optional(one.seed()) : std::nullopt;
+  }
+  return seed;
 }
 
 std::optional<Vec3> surface_place(const Session& session, const Pane& pane, const ImVec2& at) {

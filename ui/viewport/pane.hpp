@@ -106,6 +106,8 @@ std::string value_under(const app::Session& session, const Pane& pane, const ImV
 int person_under(const app::Session& session, const Pane& pane, const ImVec2& at);
 /// The found bone under the pointer; -1: none.
 int bone_under(const app::Session& session, const Pane& pane, const ImVec2& at);
+/// The motion that is offered whose ghost is under the pointer, in front of any other; none: there is none.
+std::optional<uint64_t> offered_under(const app::Session& session, const Pane& pane, const ImVec2& at);
 /// The place on a pane's surface under the pointer.
 std::optional<Vec3> surface_place(const app::Session& session, const Pane& pane, const ImVec2& at);
 

@@ -164,6 +164,7 @@ PaneScene Builder::build() {
   memory_.ghosts.drop_unused();
   memory_.colours.drop_unused();
   memory_.moved.drop_unused();
+  memory_.made.drop_unused();
   return std::move(out_);
 }
 
@@ -220,6 +221,8 @@ void Builder::add_scan() {
   add_bones({session_, in_.pane, in_.pictures, in_.preview.found, aside_of(0)}, memory_.bones, out_.scene);
   explain_painted_bone();
   add_second_body(session_, in_.pictures.frame, aside_of(0), memory_.second, out_.scene);
+  for (const app::ShownMotion& one : app::shown_motions(session_, in_.pictures.frame))
+    add_made_motion(*session_.bones.rig, one, aside_of(0), memory_.made[one.made.get()], out_.scene);
 }
 
 void Builder::add_take(size_t i) {

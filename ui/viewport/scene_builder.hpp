@@ -9,6 +9,7 @@
 
 #include "render/scene.hpp"
 #include "ui/viewport/bones_view.hpp"
+#include "ui/viewport/made_motions_view.hpp"
 #include "ui/viewport/panes.hpp"
 #include "ui/viewport/second_body_view.hpp"
 #include "ui/viewport/surface_values.hpp"
@@ -61,6 +62,11 @@ class KeptValues {
       it = std::exchange(it->second.used, false) ? std::next(it) : entries_.erase(it);
   }
   size_t size() const { return entries_.size(); }
+  /// Null where it is not kept.
+  const Value* find(const Key& key) const {
+    const auto found = entries_.find(key);
+    return found == entries_.end() ? nullptr : &found->second.value;
+  }
 
  private:
   struct Entry {
@@ -79,6 +85,7 @@ struct SceneMemory {
   ShownScan scan;
   KeptValues<int, ShownScan> ghosts;  ///< by their number
   BonesMemory bones, second;          ///< the found body, and the one that performs what it does
+  KeptValues<const app::GeneratedMotion*, BonesMemory> made;  ///< the found body in motions that were made
 };
 
 struct SceneInput {

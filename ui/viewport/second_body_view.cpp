@@ -52,7 +52,7 @@ void add_second_body(const app::Session& session, int frame, const Vec3& aside, 
   }
   paint(session, memory);
   pose_surface(*body, at, place, memory);
-  add_surface(surface, memory, scene);
+  add_surface(surface, memory, {}, scene);
   if (!session.view.source.bones) return;
   PosedBones posed = posed_bones(body->rig, body->motion.poses[static_cast<size_t>(at)]);
   posed.places.rowwise() += place.transpose();

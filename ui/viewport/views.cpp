@@ -282,8 +282,8 @@ PaneView Views::tool_view(const Session& session, const Pane& pane) {
   return pane.view.shifted(aside(session, pane.content, person_of_tool(session, pane.content)));
 }
 
-/// A click, not a drag, on a bone that was found in the scan chooses it; on somebody it makes them the
-/// source.
+/// A click, not a drag, on a bone that was found in the scan chooses it; on a motion that is offered it keeps
+/// that; on somebody it makes them the source.
 void Views::choose_person(const Frame& f, const Pane& pane, const Pointer& now) {
   const ImGuiIO& io = ImGui::GetIO();
   const bool dragged = io.MouseDragMaxDistanceSqr[0] >= io.MouseDragThreshold * io.MouseDragThreshold;
@@ -291,6 +291,8 @@ void Views::choose_person(const Frame& f, const Pane& pane, const Pointer& now) 
   if (const int bone = bone_under(f.session, pane, now.at); bone >= 0)
     return f.context.queue.push_back(
         {"bones.select", {bone == f.session.bones.selected ? "none" : std::to_string(bone)}});
+  if (const auto seed = offered_under(f.session, pane, now.at))
+    return f.context.queue.push_back({"generate.keep", {std::to_string(*seed)}});
   const int person = person_under(f.session, pane, now.at);
   if (person > 0 && person != f.session.source.person)
     f.context.queue.push_back({"source.person", {std::to_string(person)}});
@@ -430,6 +432,7 @@ void Views::show(const Frame& f, Pane& pane, const Rect& part, bool right) {
   describe(f.session, pane, f.context.ui.theme(), overlay);
   overlay.active = panes_.size() > 1 && f.session.view.layout == app::Layout::SideBySide &&
                    pane.content.number == f.session.view.active_pane;
+  mark_made_motions(f, pane, overlay);
   draw_overlay(f.context.ui, overlay);
   draw_brush(f, pane);
   mark_rings(f, pane);
@@ -511,6 +514,8 @@ std::string Views::words_at_pointer(const Session& session, const Pane& pane) co
   std::string words = hand_.tip();
   if (!words.empty() || session.playback.playing) return words;
   if (const int bone = bone_at_pointer(session, pane); bone >= 0) return bone_words(session, bone);
+  if (const auto seed = offered_under(session, pane, pointer_.at); seed && session.tool == app::Tool::Look)
+    return "Motion " + std::to_string(*seed) + ": click, and it becomes a clip";
   words = value_under(session, pane, pointer_.at);
   if (!words.empty() || session.tool != app::Tool::Look) return words;
   if (const int number = person_under(session, pane, pointer_.at); number > 0)
@@ -540,6 +545,27 @@ void Views::mark_bones(const Frame& f, const Pane& pane) {
   if (!bones) return;
   for (const auto& [joint, at] : bone_middles(pane.view.shifted(aside(f.session, pane.content, 0)), *bones))
     f.context.ui.mark("view.bone." + std::to_string(joint), {{at.x - 1, at.y - 1}, {at.x + 1, at.y + 1}});
+}
+
+/// On the surface of each motion that is shown, its seed over its head.
+void Views::mark_made_motions(const Frame& f, const Pane& pane, Overlay& overlay) {
+  if (!pane.content.source) return;
+  for (const app::ShownMotion& one : app::shown_motions(f.session, pane.keeper.pictures().frame)) {
+    const BonesMemory* const drawn = pane.memory.made.find(one.made.get());
+    if (drawn == nullptr || drawn->vertices->rows() == 0) continue;
+    const Points& points = *drawn->vertices;
+    const Vec3 middle = points.colwise().mean().transpose();
+    Eigen::Index nearest = 0;
+    (points.rowwise() - middle.transpose()).rowwise().squaredNorm().minCoeff(&nearest);
+    if (const auto at = pane.view.project(points.row(nearest)))
+      f.context.ui.mark("view.made." + std::to_string(one.seed()),
+                        {{at->x - 1, at->y - 1}, {at->x + 1, at->y + 1}});
+    const Vec3 above(middle.x(), points.col(1).maxCoeff(), middle.z());
+    const std::string name = one.clip < 0
+                                 ? "Motion " + std::to_string(one.seed())
+                                 : f.session.document.bones.clips[static_cast<size_t>(one.clip)].name;
+    if (const auto at = pane.view.project(above)) overlay.labels.push_back({*at, name, one.clip >= 0});
+  }
 }
 
 /// The brush's circle, flat on the surface.

@@ -73,6 +73,7 @@ class Views {
   void draw_brush(const Frame& f, const Pane& pane);
   void mark_rings(const Frame& f, const Pane& pane) const;
   static void mark_bones(const Frame& f, const Pane& pane);
+  static void mark_made_motions(const Frame& f, const Pane& pane, Overlay& overlay);
   void keep_view_when_following_changes(const Frame& f);
 
   std::optional<render::Renderer> renderer_,

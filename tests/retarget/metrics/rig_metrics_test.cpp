@@ -220,10 +220,15 @@ TEST(SemanticConsistency, IsTheLargestShareOfAKeypoint) {
   joints << 0.1f, 0, 0, 0.9f, 0, 0;
   SemanticConsistency sc;
   EXPECT_TRUE(std::isnan(sc.value()));
+  EXPECT_TRUE(sc.joints().empty());
   for (int t = 0; t < 3; ++t) sc.push(keypoints, joints);
   joints(0, 0) = 0.8f;
   sc.push(keypoints, joints);
   EXPECT_NEAR(sc.value(), (0.75 + 1) / 2, 1e-12);
+  ASSERT_EQ(sc.joints().size(), 2u);
+  EXPECT_EQ(sc.joints()[0].keypoint, 0);
+  EXPECT_NEAR(sc.joints()[0].share, 0.75, 1e-12);
+  EXPECT_EQ(sc.joints()[1].keypoint, 1);
   EXPECT_THROW(sc.push(keypoints.topRows(1), joints), Error);
   EXPECT_THROW(sc.push(Points(0, 3), joints), Error);
 }
