@@ -20,8 +20,8 @@ class KeypointEvaluation {
   /// Judges what the kind's finder has noted last against the truth of these scans. Nothing where there is no
   /// such finder.
   void add(const std::string& kind, const RigTruth& truth);
-  /// By kinds: sc (paper 3, eq. 21) of the network's keypoints, sc_joints of the joints of the rigs found with
-  /// them, keypoints and frames. Null where nothing was noted.
+  /// By kinds: sc (paper 3, eq. 21) of the network's keypoints, sc_joints of the joints of the rigs found
+  /// with them, keypoints and frames. Null where nothing was noted.
   Json summary() const;
 
  private:

@@ -39,6 +39,11 @@ StudioServices studio_services(const std::string& weights) {
     options.weights = weights;
     return nn::load_lifter(nn::weights_folder(options));
   };
+  services.dynamics = [weights](const understudy::Rig& rig) {
+    nn::NetworkOptions options;
+    options.weights = weights;
+    return nn::load_motion_dynamics(nn::weights_folder(options), rig);
+  };
   services.lengths = [weights]() -> std::shared_ptr<const LengthReader> {
     nn::NetworkOptions options;
     options.weights = weights;

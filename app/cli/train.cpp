@@ -101,9 +101,7 @@ void add_own(CLI::App& command, nn::LifterTrainOptions& options) {
       ->check(CLI::Range(2, 1000));
 }
 void add_own(CLI::App& command, nn::MarionetteDynamicsTrainOptions& options) {
-  command.add_option("--kind", options.kind, "of bodies (default: person); all but people are made by code")
-      ->check(
-          CLI::IsMember(std::vector<std::string>(nn::kMarionetteKinds.begin(), nn::kMarionetteKinds.end())));
+  add_kind(command, options.kind);
   command
       .add_option("--form", options.form,
                   "rotations (default); positions, of joints, which paper 3 compares with")

@@ -57,8 +57,8 @@ struct SuiteOptions {
 ///   creatures: robots, animals and hands made by code, with people where there is a data folder, as bodies
 ///     whose rig is to be found: see make_creature_suite. Truths hold the rig (rig_truth_file.hpp)
 ///   creatures-captured: the same as a rig of cameras would see them, scaled to a body of 1.5 m
-///   marionette-gaps: the true rigs of arms, hands, quadrupeds and people and what they perform, between whose
-///     frames others are to be made
+///   marionette-gaps: the true rigs of arms, hands, quadrupeds and people and what they perform, between
+///     whose frames others are to be made
 ///   creatures-pairs: two of a kind made by code; what the one does the other shall perform
 int make_suite(const SuiteOptions& options, const std::function<void(const std::string& name)>& done);
 

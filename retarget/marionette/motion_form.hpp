@@ -8,8 +8,8 @@
 namespace understudy {
 
 /// Rows of a motion, [T, width()]: how the root goes and turns since the frame before, in its own heading,
-/// its height and tilt, each joint's turn (6D) or slide, and which bones stand. Lengths are sizes of the body,
-/// times seconds.
+/// its height and tilt, each joint's turn (6D) or slide, and which bones stand. Lengths are sizes of the
+/// body, times seconds.
 class MotionForm {
  public:
   /// Columns of how the root goes over the floor: two speeds, then how fast it turns; its height.

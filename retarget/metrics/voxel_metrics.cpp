@@ -77,7 +77,8 @@ std::vector<int> VoxelGrid::cells_of_each(const Points& points) const {
   for (const auto& point : points.rowwise()) {
     if (!point.allFinite()) continue;
     const Vec3 at = ((point.transpose() - middle_) / half_).cwiseMax(-1.0f).cwiseMin(1.0f);
-    const Eigen::Array3i cell = ((at.array() + 1) * (0.5f * static_cast<float>(edge_ - 1))).round().cast<int>();
+    const Eigen::Array3i cell =
+        ((at.array() + 1) * (0.5f * static_cast<float>(edge_ - 1))).round().cast<int>();
     cells.push_back((cell.z() * edge_ + cell.y()) * edge_ + cell.x());
   }
   return cells;
@@ -86,8 +87,8 @@ std::vector<int> VoxelGrid::cells_of_each(const Points& points) const {
 Points VoxelGrid::centres(const VoxelSet& cells, int edge) {
   Points centres(cells.size(), 3);
   for (size_t i = 0; i < cells.size(); ++i)
-    centres.row(i) = Eigen::RowVector3i(cells[i] % edge, cells[i] / edge % edge, cells[i] / (edge * edge))
-                         .cast<float>();
+    centres.row(i) =
+        Eigen::RowVector3i(cells[i] % edge, cells[i] / edge % edge, cells[i] / (edge * edge)).cast<float>();
   return (centres.array() * (2.0f / static_cast<float>(edge - 1)) - 1).matrix();
 }
 

@@ -1,5 +1,5 @@
-// How far two moving bodies are from each other as paper 3 measures it: on a grid, of 64 x 64 x 64 where nothing
-// else is said.
+// How far two moving bodies are from each other as paper 3 measures it: on a grid, of 64 x 64 x 64 where
+// nothing else is said.
 #pragma once
 
 #include <array>

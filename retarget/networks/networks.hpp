@@ -74,9 +74,9 @@ std::unique_ptr<KeypointTransfer> load_keypoint_transfer(const NetworkOptions& o
 /// Throws Error as load_length_reader does.
 std::unique_ptr<Lifter> load_lifter(const std::string& folder);
 
-/// The dynamics of that rig's kind, begun with it. place: the folder with marionette_dynamics_KIND.weights, or
-/// one such file. Throws Error when none is there, when the rig's bones are of none of their kinds, and naming
-/// the file when it is damaged, of another network or of another version.
+/// The dynamics of that rig's kind, begun with it. place: the folder with marionette_dynamics_KIND.weights,
+/// or one such file. Throws Error when none is there, when the rig's bones are of none of their kinds, and
+/// naming the file when it is damaged, of another network or of another version.
 std::unique_ptr<MotionDynamics> load_motion_dynamics(const std::string& place, const Rig& rig);
 
 /// The folder that weights are read from; empty when there is none.

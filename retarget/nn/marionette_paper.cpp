@@ -8,6 +8,7 @@
 #include "retarget/marionette/affinity_tree.hpp"
 #include "retarget/metrics/voxel_metrics.hpp"
 #include "retarget/nn/load.hpp"
+#include "retarget/nn/modules/affinity.hpp"
 #include "retarget/nn/modules/voxel_keypoints.hpp"
 #include "retarget/nn/weights_file.hpp"
 

@@ -7,6 +7,7 @@
 #include "retarget/base/rng.hpp"
 #include "retarget/marionette/affinity_tree.hpp"
 #include "retarget/nn/load.hpp"
+#include "retarget/nn/modules/affinity.hpp"
 #include "retarget/nn/modules/slot_net.hpp"
 #include "retarget/nn/modules/tensor_of.hpp"
 #include "retarget/nn/weights_file.hpp"
@@ -30,12 +31,7 @@ class SlotFinder final : public KeypointFinder {
   SlotFinder(SlotNet net, std::string kind) : net_(std::move(net)), kind_(std::move(kind)) {
     net_->eval();
     torch::NoGradGuard guard;
-    const auto free = affinities_of(net_->free_affinities()).contiguous();
-    std::vector<RowMatrix> affinities;
-    for (int64_t n = 0; n < free.size(0); ++n)
-      affinities.emplace_back(
-          Eigen::Map<const RowMatrix>(free[n].data_ptr<float>(), net_->slots(), net_->slots()));
-    parents_ = tree_of_affinity(affinities);
+    parents_ = tree_of_affinity(matrices_of(affinities_of(net_->free_affinities())));
   }
 
   std::vector<FoundKeypoints> find(const std::vector<Mesh>& scans) override {
@@ -57,8 +53,9 @@ class SlotFinder final : public KeypointFinder {
       if (drawn[t].rows() > 0)
         found.push_back(found_in(drawn[t], scale, scans[t].vertices));
       else if (!found.empty())
-        found.push_back(found.back());
-    while (found.size() < scans.size()) found.insert(found.begin(), found.front());
+        found.push_back(found.back()), found.back().owner.clear();
+    while (found.size() < scans.size())
+      found.insert(found.begin(), found.front()), found.front().owner.clear();
     return found;
   }
   const std::vector<int>& parents() const override { return parents_; }

@@ -58,11 +58,12 @@ const MethodChoices& rig_methods() {
       {"parts", "Parts", "rigid parts", "parts that move as one in the scans themselves, and their joints",
        nullptr},
       {"slots", "Slots", "a kind's keypoints",
-       "the keypoints and the tree that a network of this kind of body finds in every scan of it",
+       "the keypoints and the tree that a network of this kind of body finds in every scan of it, with "
+       "weights of one's own (train marionette-slots)",
        "marionette_slots"},
       {"paper", "Paper (small)", "paper 3's keypoints, trained small",
        "the keypoints and the tree of paper 3's own network, on a coarser grid with fewer channels than the "
-       "paper's: for comparison",
+       "paper's, with weights of one's own (train marionette-paper): for comparison",
        "marionette_paper"}};
   return all;
 }

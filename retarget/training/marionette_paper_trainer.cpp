@@ -1,3 +1,4 @@
+#include "retarget/base/error.hpp"
 #include "retarget/metrics/rig_metrics.hpp"
 #include "retarget/nn/modules/voxel_keypoints.hpp"
 #include "retarget/pipeline/keypoint_finder.hpp"
@@ -35,8 +36,8 @@ nn::VoxelKeypointsForm network_form(const nn::MarionettePaperTrainOptions& optio
   return {of_kind.keypoints, options.grid, options.width, of_kind.sigma};
 }
 
-/// The authors' code learns at 4e-4 over 200 epochs, falling in two steps; here there are minutes: faster, and
-/// falling evenly.
+/// The authors' code learns at 4e-4 over 200 epochs, falling in two steps; here there are minutes: faster,
+/// and falling evenly.
 Schedule marionette_paper_schedule() {
   Schedule schedule;
   schedule.rate = 2e-3;

@@ -1,6 +1,6 @@
 #include "retarget/base/log.hpp"
 #include "retarget/metrics/rig_metrics.hpp"
-#include "retarget/nn/modules/tensor_of.hpp"
+#include "retarget/nn/modules/affinity.hpp"
 #include "retarget/training/losses/affinity_losses.hpp"
 #include "retarget/training/losses/slot_losses.hpp"
 #include "retarget/training/slot_data.hpp"

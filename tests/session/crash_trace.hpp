@@ -1,4 +1,5 @@
-// Where a test's program was when it crashed: what fails once in a hundred runs, elsewhere, leaves nothing else.
+// Where a test's program was when it crashed: what fails once in a hundred runs, elsewhere, leaves no
+// other trace.
 #pragma once
 
 namespace understudy::app {

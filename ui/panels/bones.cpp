@@ -8,8 +8,8 @@
 // The second body, in second_body.cpp: bones.second; bones.perform, bones.perform.work (.cancel),
 // bones.match.K (.I, its choices), bones.perform_export, bones.perform_drop.
 // Further motions, in made_motions.cpp: bones.made; generate.frames, .between, .first, .last, .marks, .loop,
-// .count, .seed, .engine, .make, generate.work (.cancel), generate.ghosts, generate.offered.K, generate.clear,
-// generate.clips.K, generate.name, generate.remove.
+// .count, .seed, .engine, .make, generate.work (.cancel), generate.ghosts, generate.offered.K,
+// generate.clear, generate.clips.K, generate.name, generate.remove.
 #include <algorithm>
 #include <array>
 

@@ -102,7 +102,8 @@ void draw_bone(const app::Session& session, const app::Take& take, const app::Fl
             std::max(ui.px(20), ImGui::GetContentRegionAvail().x - field - side - 2 * gap));
   ImGui::SameLine(0, gap);
   const float read = result.reference->target.lengths.length[bone];
-  float pixels = result.lengths.length[bone];
+  // While it is dragged, what was chosen last: it is performed some frames later.
+  float pixels = chosen ? chosen->pixels : result.lengths.length[bone];
   ImGui::BeginChild(("##" + name).c_str(), {field, side});
   const NumberOptions options{
       app::kBonePixels.low, 4000, std::max(0.02f, read / 200), "%.1f px", read, !locked};

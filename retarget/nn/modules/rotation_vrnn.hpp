@@ -48,8 +48,8 @@ class RotationVrnnImpl : public torch::nn::Module {
   /// p(z | h) and q(z | x, h); dt [B, 1] seconds to the frame that comes.
   Gaussian prior(const VrnnState& state, const torch::Tensor& dt);
   Gaussian posterior(const VrnnState& state, const torch::Tensor& x, const torch::Tensor& dt);
-  /// The frame that z [B, latent] says, [B, width]: phi_g the root (eq. 18), phi_r the rotations (eq. 19), both
-  /// but for the root's speeds as changes of the frame before. Rotations are orthonormal.
+  /// The frame that z [B, latent] says, [B, width]: phi_g the root (eq. 18), phi_r the rotations (eq. 19),
+  /// both but for the root's speeds as changes of the frame before. Rotations are orthonormal.
   torch::Tensor decoded(const torch::Tensor& z, const VrnnState& state, const torch::Tensor& dt);
   /// The recurrent cell sees what was decoded.
   void advance(const torch::Tensor& decoded, const torch::Tensor& z, const torch::Tensor& dt,

@@ -45,15 +45,6 @@ torch::Tensor frames_of(const torch::Tensor& heading) {
 
 }  // namespace
 
-torch::Tensor affinities_of(const torch::Tensor& free) {
-  const auto K = free.size(1);
-  const auto rows = torch::softmax(free, 2);
-  const auto others = torch::arange(K, torch::kInt64).repeat({K, 1});
-  const auto off = others.masked_select(~torch::eye(K, torch::kBool)).view({K, K - 1}).to(free.device());
-  return torch::zeros({free.size(0), K, K}, free.options())
-      .scatter(2, off.unsqueeze(0).expand({free.size(0), K, K - 1}), rows);
-}
-
 SlotInput empty_slot_input(int64_t scans) {
   return {torch::empty({scans, kSlotPoints, 3}), torch::empty({scans, kSlotPatches, 3}),
           torch::empty({scans, kSlotPatches, kSlotPatchPoints, 3})};

@@ -33,10 +33,6 @@ struct SlotOutput {
   torch::Tensor shares;   ///< [B, N, K] of the points, the nearer ones' more; sum to 1
 };
 
-/// Paper 3, eq. 12: of each of N matrices the numbers [N, K, K - 1], without the diagonal, made to sum to 1 a row, with
-/// a diagonal of 0: A_n, [N, K, K].
-torch::Tensor affinities_of(const torch::Tensor& free);
-
 /// Patches with what is about them, by a transformer whose tokens like near ones.
 class SlotEncoderImpl : public torch::nn::Module {
  public:
@@ -74,7 +70,7 @@ class SlotNetImpl : public torch::nn::Module {
   explicit SlotNetImpl(int64_t slots);
   SlotOutput forward(const SlotInput& input);
   int64_t slots() const { return slots_; }
-  /// Which slots hang together: [2, K, K - 1] free numbers, see affinities_of().
+  /// Which slots hang together: [2, K, K - 1] numbers, see affinities_of().
   torch::Tensor free_affinities() const { return kAffinityPace * affinity; }
 
  private:

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "retarget/base/error.hpp"
+#include "retarget/nn/modules/affinity.hpp"
 
 namespace understudy::nn {
 namespace {
@@ -192,11 +193,7 @@ torch::Tensor VoxelKeypointsNetImpl::decoded(const VoxelKeypoints& keypoints, co
 }
 
 torch::Tensor VoxelKeypointsNetImpl::affinities() const {
-  const int64_t N = kAffinityMatrices, K = form_.keypoints;
-  const auto rows = (kAffinityPace * free_affinity).softmax(2);  // [N, K, K - 1]
-  // Row i of K - 1 numbers leaves out column i: with a zero before every K of them they fall into place.
-  const auto padded = torch::constant_pad_nd(rows.reshape({N, K - 1, K}), {1, 0});  // [N, K - 1, K + 1]
-  return torch::constant_pad_nd(padded.flatten(1), {0, 1}).view({N, K, K});
+  return affinities_of(kAffinityPace * free_affinity);
 }
 
 torch::Tensor voxels_of(const std::vector<std::vector<int>>& cells, int64_t grid) {
@@ -208,15 +205,6 @@ torch::Tensor voxels_of(const std::vector<std::vector<int>>& cells, int64_t grid
     at += grid * grid * grid;
   }
   return voxels;
-}
-
-std::vector<RowMatrix> matrices_of(const torch::Tensor& affinities) {
-  const auto flat = affinities.detach().cpu().contiguous();
-  const auto K = static_cast<Eigen::Index>(flat.size(1));
-  std::vector<RowMatrix> matrices;
-  for (int64_t n = 0; n < flat.size(0); ++n)
-    matrices.push_back(Eigen::Map<const RowMatrix>(flat.data_ptr<float>() + n * K * K, K, K));
-  return matrices;
 }
 
 }  // namespace understudy::nn

@@ -90,8 +90,8 @@ class VoxelDecoderImpl : public torch::nn::Module {
 };
 TORCH_MODULE(VoxelDecoder);
 
-/// The paper's form in all its parts, of any size, but that sizes which it gives for 64 cells and 128 channels
-/// scale with those. What is trained here is small: an ablation, not what the paper measures.
+/// The paper's form in all its parts, of any size, but that sizes which it gives for 64 cells and 128
+/// channels scale with those. What is trained here is small: an ablation, not what the paper measures.
 class VoxelKeypointsNetImpl : public torch::nn::Module {
  public:
   explicit VoxelKeypointsNetImpl(const VoxelKeypointsForm& form);
@@ -123,7 +123,5 @@ TORCH_MODULE(VoxelKeypointsNet);
 
 /// Grids [T, 1, G, G, G] of ones where points are: frames in one box, cells as VoxelGrid numbers them.
 torch::Tensor voxels_of(const std::vector<std::vector<int>>& cells, int64_t grid);
-/// A_n as the tree of affinities reads them (retarget/marionette/affinity_tree).
-std::vector<RowMatrix> matrices_of(const torch::Tensor& affinities);
 
 }  // namespace understudy::nn

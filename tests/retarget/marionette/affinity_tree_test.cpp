@@ -112,9 +112,9 @@ TEST(TreeOfAffinity, AnEdgeOfMoreAffinityBreaksTheTie) {
 }
 
 TEST(TreeOfAffinity, NoThreeHangOnEachOther) {
-  // 1 2 3 and the leaves 7 8 9 about the root 0; 4 5 6 behind, each beside two of 1 2 3 and beside each other,
-  // all equally far. By 1, 5 is before 4; by 2, 6 before 5; by 3, 4 before 6: the paper's rule alone would
-  // close a ring.
+  // 1 2 3 and the leaves 7 8 9 about the root 0; 4 5 6 behind, each beside two of 1 2 3 and beside each
+  // other, all equally far. By 1, 5 is before 4; by 2, 6 before 5; by 3, 4 before 6: the paper's rule alone
+  // would close a ring.
   std::vector<Edge> edges = both_ways({{0, 1, 1}, {0, 2, 1}, {0, 3, 1}});
   for (const Edge& edge : std::vector<Edge>{{4, 1, 0.9f},
                                             {4, 3, 0.9f},

@@ -8,6 +8,7 @@
 #include "retarget/base/error.hpp"
 #include "retarget/base/log.hpp"
 #include "retarget/nn/load.hpp"
+#include "retarget/nn/modules/affinity.hpp"
 #include "retarget/nn/modules/voxel_keypoints.hpp"
 #include "retarget/nn/weights_file.hpp"
 #include "retarget/training/losses/keypoint_losses.hpp"

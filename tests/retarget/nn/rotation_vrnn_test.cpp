@@ -28,7 +28,8 @@ nn::VrnnOptions small(int64_t joints, bool positions = false) {
 }
 
 TEST(RotationVrnn, ForwardKinematicsOfAnyTreeIsEquation2) {
-  // A root at the origin turned by 90 degrees about z, a child 1 along x turned by 90 more, its child 2 along x.
+  // A root at the origin turned by 90 degrees about z, a child 1 along x turned by 90 more, its child 2
+  // along x.
   const auto quarter = torch::tensor({{0.0f, -1.0f, 0.0f}, {1.0f, 0.0f, 0.0f}, {0.0f, 0.0f, 1.0f}});
   const auto rest = torch::tensor({{{0.0f, 0.0f, 0.0f}, {1.0f, 0.0f, 0.0f}, {3.0f, 0.0f, 0.0f}}});
   const auto local = torch::stack({quarter, quarter, torch::eye(3)}).view({1, 1, 3, 3, 3});

@@ -12,6 +12,7 @@
 #include "retarget/base/error.hpp"
 #include "retarget/creature/creature.hpp"
 #include "retarget/nn/load.hpp"
+#include "retarget/nn/modules/affinity.hpp"
 #include "retarget/nn/modules/slot_net.hpp"
 #include "retarget/training/losses/slot_losses.hpp"
 #include "retarget/training/slot_data.hpp"
@@ -70,7 +71,8 @@ TEST(SlotNet, AffinitiesHaveRowsOfOneAndNoLoop) {
   EXPECT_TRUE(torch::allclose(rows[0], wanted));
 }
 
-/// One scan of one point, two slots: the first stays, the second turns by 90 degrees about z and goes to x = 2.
+/// One scan of one point, two slots: the first stays, the second turns by 90 degrees about z and goes to x =
+/// 2.
 struct TwoSlots {
   nn::SlotOutput from, to;
   TwoSlots() {
