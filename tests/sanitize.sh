@@ -9,7 +9,7 @@ cd "$(dirname "$(readlink -f "$0")")/.."
 . cmake/build.sh
 take_options "$@"
 install_packages build test
-export UBSAN_OPTIONS=print_stacktrace=1 TSAN_OPTIONS=suppressions=$PWD/tests/tsan_suppressions.txt
+export UBSAN_OPTIONS=print_stacktrace=1 ASAN_OPTIONS=handle_sigill=1 TSAN_OPTIONS=suppressions=$PWD/tests/tsan_suppressions.txt
 
 # sanitized PRESET TARGET CHOICE...: builds the targets under a preset and runs what the options of ctest choose.
 sanitized() {
