@@ -141,7 +141,7 @@ std::shared_ptr<const GeneratedMotion> Studio::kept_motion(const GenerationOptio
 }
 
 std::shared_ptr<MotionsJob> Studio::motions_job(std::vector<GenerationOptions> wanted) const {
-  const auto work = std::make_shared<MotionsJob>();
+  auto work = std::make_shared<MotionsJob>();
   work->rig = session_.bones.rig;
   work->name = session_.source.name.empty() ? "the found rig" : session_.source.name;
   work->wanted = std::move(wanted);

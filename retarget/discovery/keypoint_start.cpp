@@ -13,6 +13,7 @@ constexpr float kTurnedTogether = 0.12f;  // of the diagonal: keypoints about on
 
 std::vector<FoundKeypoints> keypoints_in(const std::vector<ThinnedFrame>& frames, KeypointFinder& finder) {
   std::vector<Mesh> scans;
+  scans.reserve(frames.size());
   for (const ThinnedFrame& frame : frames) scans.push_back({frame.points, Faces(0, 3)});
   return finder.find(scans);
 }

@@ -145,6 +145,7 @@ std::vector<int> tree_of_affinity(const std::vector<RowMatrix>& affinities) {
   const int root = connect(edges);
   const Parents parents(affinity, edges, ranks_of(affinity, edges, root));
   std::vector<int> tree;
+  tree.reserve(static_cast<size_t>(affinity.rows()));
   for (int i = 0; i < static_cast<int>(affinity.rows()); ++i) tree.push_back(parents.of(i, tree));
   return tree;
 }

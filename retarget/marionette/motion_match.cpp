@@ -38,6 +38,7 @@ RowMatrix rows_at(const RowMatrix& rows, const std::vector<float>& times) {
 
 RowMatrix resampled(const RowMatrix& rows, int count) {
   std::vector<float> times;
+  times.reserve(static_cast<size_t>(count));
   for (int i = 0; i < count; ++i)
     times.push_back(count < 2 ? 0.0f
                               : static_cast<float>(i) * static_cast<float>(rows.rows() - 1) /
