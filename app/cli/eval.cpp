@@ -108,6 +108,17 @@ struct EvalFiles {
   std::string out, pictures;
 };
 
+/// Of the suites of creatures.
+void add_rig_options(CLI::App& command, EvalOptions& options) {
+  command
+      .add_option("--method", options.rig_method,
+                  "how rigs are found (creatures). " + help_of(rig_methods()) +
+                      " (default: " + rig_methods().front().name + ")")
+      ->check([](const std::string& name) { return failure_of([&] { rig_method_named(name); }); });
+  command.add_flag("--held-out", options.held_out,
+                   "finds rigs once more, in even frames alone, and poses them on the odd ones (creatures)");
+}
+
 }  // namespace
 
 Action declare_eval(CLI::App& command) {
@@ -155,13 +166,7 @@ Action declare_eval(CLI::App& command) {
   add_tempo_options(command, options->tempo);
   command.add_option("--legs", options->legs_m, "for --tempo body: legs of who performs it, metres (style)")
       ->check(CLI::Range(0.01, 100.0));
-  command
-      .add_option("--method", options->rig_method,
-                  "how rigs are found (creatures). " + help_of(rig_methods()) +
-                      " (default: " + rig_methods().front().name + ")")
-      ->check([](const std::string& name) { return failure_of([&] { rig_method_named(name); }); });
-  command.add_flag("--held-out", options->held_out,
-                   "finds rigs once more, in even frames alone, and poses them on the odd ones (creatures)");
+  add_rig_options(command, *options);
   command.add_option("--worst", options->worst, "worst frames to list (default: 20)")
       ->check(CLI::Range(0, 10000));
   command.add_option("--pictures", files->pictures,

@@ -59,6 +59,7 @@ void write_sheet(const GenerateOptions& options, const understudy::Rig& rig, con
   constexpr int kShown = 6;
   const int last = static_cast<int>(ssize(motion.poses)) - 1, shown = std::min(kShown, last + 1);
   std::vector<render::SheetMoment> moments;
+  moments.reserve(static_cast<size_t>(shown));
   for (int i = 0; i < shown; ++i)
     moments.push_back(rig_moment({rig, motion}, i * last / std::max(1, shown - 1)));
   render::SheetOptions sheet;

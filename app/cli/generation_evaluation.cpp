@@ -51,6 +51,7 @@ using Between = std::function<std::vector<RigPose>(const std::vector<PoseKey>& k
 
 std::vector<Points> surfaces_of(const understudy::Rig& rig, const std::vector<RigPose>& poses) {
   std::vector<Points> surfaces;
+  surfaces.reserve(poses.size());
   for (const RigPose& pose : poses)
     surfaces.push_back(skinned(rig.surface.vertices, rig.skin, bone_motions(rig, pose)));
   return surfaces;

@@ -30,7 +30,7 @@ RigFinder KeypointEvaluation::finder(const EvalOptions& options, const std::stri
       }
       judged.keypoints.push_back(bright);
     }
-    const FoundRig rig = rig_finder(judged.network)(scans, fps);
+    FoundRig rig = rig_finder(judged.network)(scans, fps);
     for (const RigPose& pose : rig.found.motion.poses)
       judged.joints.push_back(joint_places(rig.found.rig, bone_motions(rig.found.rig, pose)));
     return rig;
