@@ -1,6 +1,5 @@
 #include <torch/torch.h>
 
-#include <algorithm>
 #include <cmath>
 
 #include "retarget/base/error.hpp"
@@ -9,7 +8,6 @@
 #include "retarget/nn/load.hpp"
 #include "retarget/nn/modules/affinity.hpp"
 #include "retarget/nn/modules/slot_net.hpp"
-#include "retarget/nn/modules/tensor_of.hpp"
 #include "retarget/nn/weights_file.hpp"
 
 namespace understudy::nn {
@@ -17,10 +15,12 @@ namespace {
 
 constexpr uint64_t kSlotSeed = 20260321;  // the same scan gives the same keypoints
 
-/// Exactly kSlotPoints of a scan, with repeats where it has fewer.
+/// Exactly kSlotPoints of a scan that are finite, with repeats where it has fewer; none of an empty one.
 Points slot_points(const Mesh& scan) {
+  if (scan.vertices.rows() == 0) return Points(0, 3);
   Rng rng(kSlotSeed);
-  const Points drawn = sample_points(scan, kSlotPoints, rng);
+  const Points drawn = finite_points(sample_points(scan, kSlotPoints, rng));
+  if (drawn.rows() == 0) return drawn;
   Points points(kSlotPoints, 3);
   for (Eigen::Index i = 0; i < points.rows(); ++i) points.row(i) = drawn.row(i % drawn.rows());
   return points;
@@ -39,7 +39,7 @@ class SlotFinder final : public KeypointFinder {
     double sum = 0;
     int seen = 0;
     for (const Mesh& scan : scans) {
-      drawn.push_back(scan.vertices.rows() > 0 ? slot_points(scan) : Points(0, 3));
+      drawn.push_back(slot_points(scan));
       if (drawn.back().rows() == 0) continue;
       const Eigen::RowVector3f middle = drawn.back().colwise().mean();
       sum += (drawn.back().rowwise() - middle).rowwise().squaredNorm().mean();

@@ -1,7 +1,7 @@
-#include "retarget/base/log.hpp"
 #include "retarget/metrics/rig_metrics.hpp"
 #include "retarget/nn/modules/affinity.hpp"
 #include "retarget/training/losses/affinity_losses.hpp"
+#include "retarget/training/losses/keypoint_losses.hpp"
 #include "retarget/training/losses/slot_losses.hpp"
 #include "retarget/training/slot_data.hpp"
 #include "retarget/training/training_run.hpp"
@@ -78,7 +78,7 @@ class SlotTrainer final : public TrainingRun {
     const auto there = few.index_select(0, t);
     LossSum loss;
     loss.add("warp", nearest_distance(moved, there) + nearest_distance(there, moved));
-    loss.add("vol", volume_loss(points, all.places));
+    loss.add("vol", volume_fitting_loss(points, torch::ones({points.size(0), points.size(1)}), all.places));
     loss.add("inside", nearest_distance(all.places, points), 0.1);
     const auto first = index.select(1, 0), turned = torch::arange(count, torch::kInt64) + count * kSlotWindow;
     const auto wanted = torch::matmul(all.places.index_select(0, first), batch.turned.transpose(1, 2));

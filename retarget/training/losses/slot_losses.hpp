@@ -14,11 +14,6 @@ inline torch::Tensor nearest_distance(const torch::Tensor& points, const torch::
   return (squared + 1e-4).sqrt().mean();
 }
 
-/// L_vol, paper 3, eq. 8: mean over points of the squared distance to the nearest keypoint.
-inline torch::Tensor volume_loss(const torch::Tensor& points, const torch::Tensor& places) {
-  return std::get<0>(nn::squared_distance(points, places).min(2)).clamp_min(0).mean();
-}
-
 /// The points of scans `from`, each carried by the slots that share it to where they are in `to`,
 /// [B, N, 3]: sum_k w_ik (R_k,to R_k,from^T (x_i - mu_k,from) + mu_k,to).
 inline torch::Tensor carried(const torch::Tensor& points, const nn::SlotOutput& from,

@@ -14,6 +14,7 @@
 #include "retarget/nn/load.hpp"
 #include "retarget/nn/modules/affinity.hpp"
 #include "retarget/nn/modules/slot_net.hpp"
+#include "retarget/training/losses/keypoint_losses.hpp"
 #include "retarget/training/losses/slot_losses.hpp"
 #include "retarget/training/slot_data.hpp"
 #include "retarget/training/training_run.hpp"
@@ -106,7 +107,8 @@ TEST(SlotLosses, AJointIsWhatBothSlotsCarryAlike) {
 TEST(SlotLosses, VolumeIsThePointsSquaredDistanceToTheNearestKeypoint) {  // paper 3, eq. 8
   const auto points = torch::tensor({{{0.0f, 0.0f, 0.0f}, {3.0f, 0.0f, 0.0f}}});
   const auto places = torch::tensor({{{0.0f, 1.0f, 0.0f}, {5.0f, 0.0f, 0.0f}}});
-  EXPECT_NEAR(training::volume_loss(points, places).item<float>(), (1 + 4) / 2.0f, 1e-5);
+  EXPECT_NEAR(training::volume_fitting_loss(points, torch::ones({1, 2}), places).item<float>(),
+              (1 + 4) / 2.0f, 1e-5);
 }
 
 class SlotTraining : public ::testing::Test {
@@ -141,6 +143,10 @@ TEST_F(SlotTraining, WritesWeightsThatFindTheSameKeypointsInEveryScan) {
   EXPECT_TRUE(found[1].places == found[0].places) << "an empty scan repeats those before it";
   EXPECT_TRUE(((found[2].places - found[0].places).rowwise() - Eigen::RowVector3f(3, 0, 1)).norm() < 1e-3f);
   EXPECT_THROW(finder->find({Mesh{}}), Error);
+  Mesh holes = arm.surface;
+  holes.faces.resize(0, 3);
+  holes.vertices.topRows(20).setConstant(std::nanf(""));
+  EXPECT_TRUE(finder->find({holes})[0].places.allFinite());
 }
 
 TEST_F(SlotTraining, RefusesAnotherKindAndOthersWeights) {
