@@ -13,6 +13,8 @@
 namespace understudy::app {
 namespace {
 
+// A sanitizer tells it itself, and more of it.
+constexpr bool kSanitized = __has_feature(address_sanitizer) || __has_feature(thread_sanitizer);
 constexpr int kFatalSignals[] = {SIGILL, SIGSEGV, SIGBUS, SIGFPE};
 
 void write_text(const char* text) {
@@ -34,14 +36,13 @@ void tell_crash(int signal, siginfo_t* info, void*) {
 }  // namespace
 
 void tell_where_it_crashes() {
-#if !__has_feature(address_sanitizer) && !__has_feature(thread_sanitizer)
+  if (kSanitized) return;
   void* warm[1];
   ::backtrace(warm, 1);  // it loads a library the first time, which a handler must not
   struct sigaction action {};
   action.sa_sigaction = tell_crash;
   action.sa_flags = SA_SIGINFO;
   for (const int signal : kFatalSignals) ::sigaction(signal, &action, nullptr);
-#endif
 }
 
 }  // namespace understudy::app
