@@ -16,7 +16,9 @@ std::string yes_no(bool yes) {
 }
 
 const char* question_name(const Session& session) {
-  constexpr Names<6> kNames{"unsaved", "recover", "missing", "paint", "not-a-person", "unsaved-study"};
+  constexpr Names<7> kNames{"unsaved",      "recover",       "missing", "paint",
+                            "not-a-person", "unsaved-study", "canvas"};
+  static_assert(kNames.size() == static_cast<size_t>(Question::Kind::Canvas) + 1);
   return session.question ? kNames[static_cast<size_t>(session.question->kind)] : "none";
 }
 

@@ -121,7 +121,9 @@ TEST_F(FlatPath, APointThatIsHeldIsPerformedBeforeItIsLetGo) {
 TEST_F(FlatPath, AFileThatDoesNotSayHowLargeItsPictureIsAsks) {
   write_landmarks();
   make(render::ContextKind::Null, {1280, 1200});
-  play("drop " + path("mediapipe.json") + "\nwait\nframes 3\nexpect canvas.open\nexpect_no error.close");
+  play("drop " + path("mediapipe.json") +
+       "\nwait\nframes 3\nexpect canvas.open\nexpect_no error.close\n"
+       "expect_value question canvas");
   play("click canvas.cancel\nframes 3\nexpect_no canvas.open");
   EXPECT_TRUE(session().document.source.path.empty());
   play("drop " + path("mediapipe.json") +
