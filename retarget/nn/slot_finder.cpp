@@ -4,9 +4,8 @@
 
 #include "retarget/base/error.hpp"
 #include "retarget/base/rng.hpp"
-#include "retarget/marionette/affinity_tree.hpp"
+#include "retarget/marionette/link_tree.hpp"
 #include "retarget/nn/load.hpp"
-#include "retarget/nn/modules/affinity.hpp"
 #include "retarget/nn/modules/slot_net.hpp"
 #include "retarget/nn/weights_file.hpp"
 
@@ -31,7 +30,9 @@ class SlotFinder final : public KeypointFinder {
   SlotFinder(SlotNet net, std::string kind) : net_(std::move(net)), kind_(std::move(kind)) {
     net_->eval();
     torch::NoGradGuard guard;
-    parents_ = tree_of_affinity(matrices_of(affinities_of(net_->free_affinities())));
+    const auto costs = net_->link_costs().contiguous();
+    parents_ =
+        tree_of_links(Eigen::Map<const RowMatrix>(costs.data_ptr<float>(), net_->slots(), net_->slots()));
   }
 
   std::vector<FoundKeypoints> find(const std::vector<Mesh>& scans) override {

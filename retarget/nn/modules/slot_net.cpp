@@ -13,6 +13,8 @@ namespace {
 constexpr int64_t kSlotWidth = 96, kSlotHeads = 4, kSlotLayers = 3;
 constexpr int64_t kHeadingWidth = 64, kHeadingLayers = 2;
 constexpr double kAxis = 0.1;        // normalised: nearer the middle there is no way away from it
+constexpr double kLinkPace = 0.005;  // of the running mean, a step
+constexpr double kApartCosts = 0.2;  // of keypoints that carry each other alike, near ones hang together
 constexpr double kSlotReach = 0.12;  // normalised: points are shared by slots about as near
 
 /// Numbers of the `count` nearest of `among` to a place, nearest first.
@@ -137,7 +139,19 @@ SlotNetImpl::SlotNetImpl(int64_t slots) : slots_(slots) {
   choice_head = register_module("choice_head", Linear(W, slots));
   slot_head = register_module("slot_head", Sequential(Linear(W, 128), ReLU(), Linear(128, 3 + 6)));
   slot_embedding = register_parameter("slot_embedding", 0.5 * torch::randn({1, slots, W}));
-  affinity = register_parameter("affinity", 0.01 * torch::randn({2, slots, slots - 1}));
+  missed_ = register_buffer("missed", torch::zeros({slots, slots}));
+  apart_ = register_buffer("apart", torch::zeros({slots, slots}));
+  seen_ = register_buffer("seen", torch::zeros({1}));
+}
+
+void SlotNetImpl::learn_links(const torch::Tensor& missed, const torch::Tensor& apart) {
+  missed_.lerp_(missed.detach(), kLinkPace);
+  apart_.lerp_(apart.detach(), kLinkPace);
+  seen_.lerp_(torch::ones_like(seen_), kLinkPace);
+}
+
+torch::Tensor SlotNetImpl::link_costs() const {
+  return (missed_ + kApartCosts * apart_) / seen_.clamp_min(1e-6);
 }
 
 SlotOutput SlotNetImpl::forward(const SlotInput& input) {

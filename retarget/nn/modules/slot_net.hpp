@@ -70,18 +70,20 @@ class SlotNetImpl : public torch::nn::Module {
   explicit SlotNetImpl(int64_t slots);
   SlotOutput forward(const SlotInput& input);
   int64_t slots() const { return slots_; }
-  /// Which slots hang together: [2, K, K - 1] numbers, see affinities_of().
-  torch::Tensor free_affinities() const { return kAffinityPace * affinity; }
+
+  /// How well slots have carried each other so far, a running mean: `missed` [K', K] how far k' takes k from
+  /// where it is (see training::missed_by), `apart` [K', K] how far they are apart.
+  void learn_links(const torch::Tensor& missed, const torch::Tensor& apart);
+  /// [K', K] what it costs that k hangs on k': the less, the better k' carries it and the nearer it is.
+  torch::Tensor link_costs() const;
 
  private:
-  static constexpr double kAffinityPace = 3;  // they are learnt so much faster than weights
-
   int64_t slots_;
   HeadingNet heading{nullptr};
   SlotEncoder encoder{nullptr};
   torch::nn::Sequential slot_head{nullptr};
   torch::nn::Linear choice_head{nullptr};
-  torch::Tensor slot_embedding, affinity;
+  torch::Tensor slot_embedding, missed_, apart_, seen_;  // the links' sums, and the sum of their weights
 };
 TORCH_MODULE(SlotNet);
 

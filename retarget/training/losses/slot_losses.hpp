@@ -25,15 +25,37 @@ inline torch::Tensor carried(const torch::Tensor& points, const nn::SlotOutput& 
   return moved.squeeze(3) + torch::matmul(from.shares, shift);
 }
 
-/// Where a keypoint hangs on another one is a joint: both carry it alike. Mean over scans and keypoints k of
-/// the distance between where k is in `to` and where k' takes the k of `from`, the affine k' [K, K] more.
-inline torch::Tensor joint_loss(const torch::Tensor& affinity, const nn::SlotOutput& from,
-                                const nn::SlotOutput& to) {
+/// How far each keypoint k' takes each other k of `from` from where it is in `to`, [B, K', K]: nothing where
+/// both carry a joint alike that is at k.
+inline torch::Tensor missed_by(const nn::SlotOutput& from, const nn::SlotOutput& to) {
   const auto turn = torch::matmul(to.turns, from.turns.transpose(2, 3));                 // [B, K', 3, 3]
   const auto arm = from.places.unsqueeze(1) - from.places.unsqueeze(2);                  // [B, K', K, 3]
   const auto moved = torch::matmul(arm, turn.transpose(2, 3)) + to.places.unsqueeze(2);  // [B, K', K, 3]
-  const auto apart = ((moved - to.places.unsqueeze(1)).square().sum(3) + 1e-4).sqrt();   // [B, K', K]
-  return (apart * affinity.transpose(0, 1)).sum(1).mean();
+  return ((moved - to.places.unsqueeze(1)).square().sum(3) + 1e-4).sqrt();
+}
+
+/// Mean over scans and keypoints k of how far others take it from where it is, the affine k' [K', K] more.
+inline torch::Tensor joint_loss(const torch::Tensor& affinity, const torch::Tensor& missed) {
+  return (missed * affinity).sum(1).mean();
+}
+
+/// Mean distance that keypoints go from frame to frame, [W, T, K, 3]: two that exchange their places go far.
+inline torch::Tensor place_steps(const torch::Tensor& places) {
+  const auto T = places.size(1);
+  const auto steps = places.narrow(1, 1, T - 1) - places.narrow(1, 0, T - 1);
+  return (steps.square().sum(3) + 1e-4).sqrt().mean();
+}
+
+/// Mean over keypoints of how many others are about as near as `reach`: places [B, K, 3].
+inline torch::Tensor crowding_loss(const torch::Tensor& places, double reach = 0.1) {
+  const auto squared = nn::squared_distance(places, places).clamp_min(0);
+  return (-squared / (2 * reach * reach)).exp().sum(2).mean() - 1;
+}
+
+/// What keypoints hang on, from what it costs, [K', K]: columns sum to 1, the diagonal is 0.
+inline torch::Tensor affinity_of_links(const torch::Tensor& costs, double sharp = 0.03) {
+  const auto self = torch::eye(costs.size(0), torch::kBool).to(costs.device());
+  return (-costs / sharp).masked_fill(self, -1e9).softmax(0);
 }
 
 }  // namespace understudy::training

@@ -98,10 +98,48 @@ TEST(SlotLosses, AJointIsWhatBothSlotsCarryAlike) {
   TwoSlots two;
   // The first keypoint hangs on the second, which takes (0, 0, 0) to (2, -1, 0): sqrt 5 from where it is. The
   // second one hangs on the first, which leaves it at (1, 0, 0): 1 from where it is.
+  const auto missed = training::missed_by(two.from, two.to);
+  EXPECT_NEAR(missed[0][1][0].item<float>(), std::sqrt(5.0f), 1e-3);
+  EXPECT_NEAR(missed[0][0][1].item<float>(), 1, 1e-3);
   const auto both = torch::tensor({{0.0f, 1.0f}, {1.0f, 0.0f}});
-  EXPECT_NEAR(training::joint_loss(both, two.from, two.to).item<float>(), (std::sqrt(5.0f) + 1) / 2, 1e-3);
-  const auto first = torch::tensor({{0.0f, 1.0f}, {0.0f, 0.0f}});
-  EXPECT_NEAR(training::joint_loss(first, two.from, two.to).item<float>(), std::sqrt(5.0f) / 2, 1e-3);
+  EXPECT_NEAR(training::joint_loss(both, missed).item<float>(), (std::sqrt(5.0f) + 1) / 2, 1e-3);
+  const auto first = torch::tensor({{0.0f, 0.0f}, {1.0f, 0.0f}});
+  EXPECT_NEAR(training::joint_loss(first, missed).item<float>(), std::sqrt(5.0f) / 2, 1e-3);
+}
+
+TEST(SlotLosses, WhatIsCarriedBestHangsTogetherMost) {
+  const auto costs = torch::tensor({{0.0f, 0.1f, 0.5f}, {0.2f, 0.0f, 0.1f}, {0.5f, 0.1f, 0.0f}});
+  const auto affinity = training::affinity_of_links(costs, 0.1);
+  EXPECT_TRUE(torch::allclose(affinity.sum(0), torch::ones(3)));
+  EXPECT_EQ(affinity.diagonal().abs().max().item<float>(), 0);
+  EXPECT_NEAR(affinity[0][1].item<float>(), 0.5, 1e-5) << "both carry it alike";
+  EXPECT_NEAR((affinity[1][0] / affinity[2][0]).item<float>(), std::exp(3.0f), 1e-2);
+}
+
+TEST(SlotLosses, KeypointsInOnePlaceCrowd) {
+  const auto spread = torch::tensor({{{0.0f, 0.0f, 0.0f}, {5.0f, 0.0f, 0.0f}, {0.0f, 5.0f, 0.0f}}});
+  EXPECT_NEAR(training::crowding_loss(spread).item<float>(), 0, 1e-4);
+  const auto two = torch::tensor({{{0.0f, 0.0f, 0.0f}, {0.1f, 0.0f, 0.0f}, {0.0f, 5.0f, 0.0f}}});
+  EXPECT_NEAR(training::crowding_loss(two, 0.1).item<float>(), 2 * std::exp(-0.5f) / 3, 1e-4);
+}
+
+TEST(SlotLosses, KeypointsThatExchangePlacesGoFar) {
+  const auto still = torch::tensor({{0.0f, 0.0f, 0.0f}, {3.0f, 0.0f, 0.0f}}), swapped = still.flip(0);
+  const auto steps = [](const torch::Tensor& a, const torch::Tensor& b) {
+    return training::place_steps(torch::stack({a, b}).unsqueeze(0)).item<float>();
+  };
+  EXPECT_NEAR(steps(still, still), 0.01, 1e-4);
+  EXPECT_NEAR(steps(still, swapped), 3, 1e-3);
+}
+
+TEST(SlotNet, LinksCostTheMeanOfWhatWasSeen) {
+  nn::SlotNet net(3);
+  const auto missed = torch::full({3, 3}, 0.2), apart = torch::full({3, 3}, 0.5);
+  for (int i = 0; i < 5; ++i) net->learn_links(missed, apart);
+  EXPECT_TRUE(torch::allclose(net->link_costs(), torch::full({3, 3}, 0.2 + 0.2 * 0.5), 1e-4, 1e-5))
+      << "after a few steps, too";
+  for (int i = 0; i < 2000; ++i) net->learn_links(2 * missed, apart);
+  EXPECT_TRUE(torch::allclose(net->link_costs(), torch::full({3, 3}, 0.4 + 0.2 * 0.5), 1e-3, 1e-4));
 }
 
 TEST(SlotLosses, VolumeIsThePointsSquaredDistanceToTheNearestKeypoint) {  // paper 3, eq. 8
