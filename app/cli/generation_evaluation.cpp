@@ -19,7 +19,6 @@ namespace {
 
 constexpr std::array<int, 7> kApart = {3, 5, 10, 15, 20, 25, 30};
 constexpr int kGivenPoses = 5, kMadePoses = 25;
-constexpr int kAimSteps = 20;
 
 /// Every so many frames, from the first.
 std::vector<PoseKey> keys_apart(const RigMotion& motion, int apart) {
@@ -76,9 +75,7 @@ void add_gaps(const RiggedMotion& truth, const std::string& engine, const Betwee
 Between by_network(const RiggedMotion& truth, MotionDynamics& dynamics) {
   return [&](const std::vector<PoseKey>& keys) {
     Rng rng(1);
-    std::vector<RigPose> poses = dynamics.aimed(keys, 1 / truth.motion.fps, kAimSteps, rng);
-    settle_on_keys(truth.rig, truth.motion.fps, keys, poses);
-    return poses;
+    return dynamics.aimed(keys, 1 / truth.motion.fps, rng);
   };
 }
 

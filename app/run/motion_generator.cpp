@@ -15,7 +15,6 @@ namespace {
 
 constexpr int kMostFrames = 10000, kMostMotions = 100;
 constexpr int kGivenFrames = 5;     // of the clip, that a network goes on from
-constexpr int kAimSteps = 20;       // of the gradient
 constexpr int kTrajectories = 300;  // of the paper's sampling, which has 10,000 on a GPU
 constexpr float kHurry = 1.5f;      // times the fastest of the clip: faster is told
 
@@ -84,9 +83,9 @@ std::vector<RigPose> made_by_network(const RiggedMotion& known, const Generation
   const double dt = 1 / known.motion.fps;
   const std::vector<PoseKey> keys = keys_of(known, options);
   if (!keys.empty()) {
-    std::vector<RigPose> poses = options.paper_sampling ? best_of_many(known, dynamics, keys, rng)
-                                                        : dynamics.aimed(keys, dt, kAimSteps, rng);
-    settle_on_keys(known.rig, known.motion.fps, keys, poses);
+    if (!options.paper_sampling) return dynamics.aimed(keys, dt, rng);
+    std::vector<RigPose> poses = best_of_many(known, dynamics, keys, rng);
+    meet_keys(known.rig, known.motion.fps, keys, poses);
     return poses;
   }
   dynamics.begin(known.rig);
