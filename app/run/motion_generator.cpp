@@ -7,6 +7,7 @@
 #include "retarget/base/error.hpp"
 #include "retarget/base/index.hpp"
 #include "retarget/base/text.hpp"
+#include "retarget/discovery/ground_contacts.hpp"
 #include "retarget/marionette/motion_match.hpp"
 #include "retarget/math/rotation.hpp"
 
@@ -77,6 +78,22 @@ std::vector<RigPose> best_of_many(const RiggedMotion& known, MotionDynamics& dyn
   return best;
 }
 
+/// What stands, but slides as a network makes it, stands still: the body goes as its feet push it. The poses
+/// that were given stay.
+void plant_feet(const RiggedMotion& known, size_t given, std::vector<RigPose>& poses) {
+  const std::vector<RigPose>& clip = known.motion.poses;
+  RiggedMotion both{known.rig, {known.motion.fps, clip}};  // on the clip's ground
+  both.motion.poses.insert(both.motion.poses.end(), poses.begin(), poses.end());
+  GroundContacts contacts = ground_contacts(both);
+  contacts.touches.erase(contacts.touches.begin(), contacts.touches.begin() + ssize(clip));
+  both.motion.poses = std::move(poses);
+  stand_on(contacts.ground, contacts.touches, both);
+  poses = std::move(both.motion.poses);
+  std::vector<PoseKey> keys;
+  for (size_t t = 0; t < given; ++t) keys.push_back({static_cast<int>(t), clip[t]});
+  meet_keys(known.rig, known.motion.fps, keys, poses);
+}
+
 std::vector<RigPose> made_by_network(const RiggedMotion& known, const GenerationOptions& options,
                                      MotionDynamics& dynamics, uint64_t seed) {
   Rng rng(seed);
@@ -95,7 +112,11 @@ std::vector<RigPose> made_by_network(const RiggedMotion& known, const Generation
     dynamics.observe(pose, dt);
     poses.push_back(pose);
   }
+  const size_t given = poses.size();
   while (ssize(poses) < options.frames) poses.push_back(dynamics.sample(dt, rng));
+  const std::string kind = dynamics.kind();
+  const bool walks = kind == "person" || kind == "quadruped";  // not a hand in the air
+  if (walks && known.rig.surface.vertices.rows() > 0) plant_feet(known, given, poses);
   return poses;
 }
 
