@@ -9,6 +9,7 @@
 #include "retarget/base/text.hpp"
 #include "retarget/discovery/ground_contacts.hpp"
 #include "retarget/marionette/motion_match.hpp"
+#include "retarget/math/percentile.hpp"
 #include "retarget/math/rotation.hpp"
 
 namespace understudy::app {
@@ -78,6 +79,42 @@ std::vector<RigPose> best_of_many(const RiggedMotion& known, MotionDynamics& dyn
   return best;
 }
 
+float lowest_joint(const understudy::Rig& rig, const RigPose& pose) {
+  return joint_places(rig, bone_motions(rig, pose)).col(1).minCoeff();
+}
+
+/// Says how far from the ground of its clip a body got that a network moves on and on: frame by frame it may
+/// rise a little. Nobody is in the air for longer than a while.
+class GroundLevel {
+ public:
+  explicit GroundLevel(const RiggedMotion& known) : rig_(known.rig) {
+    std::vector<double> lowest;
+    for (const RigPose& pose : known.motion.poses)
+      lowest.push_back(static_cast<double>(lowest_joint(rig_, pose)));
+    constexpr double kLowestPercent = 10;
+    ground_ = static_cast<float>(percentile(lowest, kLowestPercent));
+    constexpr double kLongestInAir = 0.7;  // seconds
+    most_ = std::max<size_t>(1, static_cast<size_t>(kLongestInAir * known.motion.fps));
+  }
+  void see(const RigPose& pose) {
+    lowest_.push_back(lowest_joint(rig_, pose));
+    if (lowest_.size() > most_) lowest_.erase(lowest_.begin());
+  }
+  /// What takes the body back to it, a part a frame, metres: the last pose is to be raised by it.
+  float back() {
+    constexpr float kBackAFrame = 0.2f;
+    const float raised = kBackAFrame * (ground_ - *std::min_element(lowest_.begin(), lowest_.end()));
+    for (float& height : lowest_) height += raised;
+    return raised;
+  }
+
+ private:
+  const understudy::Rig& rig_;
+  float ground_ = 0;
+  size_t most_ = 1;
+  std::vector<float> lowest_;
+};
+
 /// What stands, but slides as a network makes it, stands still: the body goes as its feet push it. The poses
 /// that were given stay.
 void plant_feet(const RiggedMotion& known, size_t given, std::vector<RigPose>& poses) {
@@ -94,6 +131,31 @@ void plant_feet(const RiggedMotion& known, size_t given, std::vector<RigPose>& p
   meet_keys(known.rig, known.motion.fps, keys, poses);
 }
 
+/// The clip's first poses, and what may come after them.
+std::vector<RigPose> gone_on(const RiggedMotion& known, int frames, MotionDynamics& dynamics, Rng& rng) {
+  const double dt = 1 / known.motion.fps;
+  dynamics.begin(known.rig);
+  const auto given = std::min({kGivenFrames, frames, static_cast<int>(ssize(known.motion.poses))});
+  std::vector<RigPose> poses(known.motion.poses.begin(), known.motion.poses.begin() + given);
+  GroundLevel level(known);
+  for (const RigPose& pose : poses) {
+    dynamics.observe(pose, dt);
+    level.see(pose);
+  }
+  const std::string kind = dynamics.kind();
+  const bool walks = kind == "person" || kind == "quadruped";  // not a hand in the air
+  while (ssize(poses) < frames) {
+    poses.push_back(dynamics.sample(dt, rng));
+    if (!walks) continue;
+    level.see(poses.back());
+    const float raised = level.back();
+    poses.back().root.y() += raised;
+    dynamics.raise(raised);
+  }
+  if (walks && known.rig.surface.vertices.rows() > 0) plant_feet(known, static_cast<size_t>(given), poses);
+  return poses;
+}
+
 std::vector<RigPose> made_by_network(const RiggedMotion& known, const GenerationOptions& options,
                                      MotionDynamics& dynamics, uint64_t seed) {
   Rng rng(seed);
@@ -105,19 +167,7 @@ std::vector<RigPose> made_by_network(const RiggedMotion& known, const Generation
     meet_keys(known.rig, known.motion.fps, keys, poses);
     return poses;
   }
-  dynamics.begin(known.rig);
-  std::vector<RigPose> poses;
-  for (const RigPose& pose : known.motion.poses) {
-    if (ssize(poses) == std::min(kGivenFrames, options.frames)) break;
-    dynamics.observe(pose, dt);
-    poses.push_back(pose);
-  }
-  const size_t given = poses.size();
-  while (ssize(poses) < options.frames) poses.push_back(dynamics.sample(dt, rng));
-  const std::string kind = dynamics.kind();
-  const bool walks = kind == "person" || kind == "quadruped";  // not a hand in the air
-  if (walks && known.rig.surface.vertices.rows() > 0) plant_feet(known, given, poses);
-  return poses;
+  return gone_on(known, options.frames, dynamics, rng);
 }
 
 std::vector<RigPose> made(const RiggedMotion& known, const GenerationOptions& options,

@@ -45,6 +45,7 @@ class NetworkDynamics final : public MotionDynamics {
   void begin(const Rig& rig) override;
   void observe(const RigPose& pose, double dt) override;
   RigPose sample(double dt, Rng& rng) override;
+  void raise(float height) override;
   std::vector<RigPose> aimed(const std::vector<PoseKey>& keys, double dt, Rng& rng) override;
   std::unique_ptr<MotionDynamics> clone() const override { return std::make_unique<NetworkDynamics>(*this); }
 
@@ -117,6 +118,13 @@ RigPose NetworkDynamics::sample(double dt, Rng& rng) {
   net_->advance(row, z, step, state_);
   put(row, dt);
   return *last_;
+}
+
+void NetworkDynamics::raise(float height) {
+  US_CHECK(last_, "no pose was observed to raise");
+  last_->root.y() += height;
+  state_.last = state_.last.clone();
+  state_.last[0][RotationVrnnImpl::kRoot - 1] += height / form_->size();
 }
 
 /// [1, T, width], the first key at the origin and facing along +z; zeros between keys.

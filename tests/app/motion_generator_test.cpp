@@ -10,24 +10,29 @@
 namespace understudy::app {
 namespace {
 
-/// Performs a clip, but slides over the floor.
+/// Performs a clip, but slides over the floor, or rises from it.
 class Sliding final : public MotionDynamics {
  public:
-  Sliding(std::string kind, RigMotion clip) : kind_(std::move(kind)), clip_(std::move(clip)) {}
+  Sliding(std::string kind, RigMotion clip, float rises = 0)
+      : kind_(std::move(kind)), clip_(std::move(clip)), rises_(rises) {}
   std::string kind() const override { return kind_; }
-  void begin(const understudy::Rig&) override { t_ = 0; }
+  void begin(const understudy::Rig&) override { t_ = 0, height_ = 0; }
   void observe(const RigPose&, double) override { ++t_; }
   RigPose sample(double, Rng&) override {
-    RigPose pose = clip_.poses[t_++];
+    RigPose pose = clip_.poses[t_++ % clip_.poses.size()];
+    height_ += rises_;
+    pose.root.y() += height_;
     pose.root.x() += 0.01f * static_cast<float>(t_ - 5);  // 0.3 m/s
     return pose;
   }
+  void raise(float height) override { height_ += height; }
   std::vector<RigPose> aimed(const std::vector<PoseKey>&, double, Rng&) override { return {}; }
   std::unique_ptr<MotionDynamics> clone() const override { return std::make_unique<Sliding>(*this); }
 
  private:
   std::string kind_;
   RigMotion clip_;
+  float rises_, height_ = 0;
   size_t t_ = 0;
 };
 
@@ -64,6 +69,27 @@ TEST(MotionGenerator, FeetThatANetworkLetsSlideStand) {
   EXPECT_GT(slides(dog.rig, flies, contacts), 0.2f);  // a hand in the air stands on nothing
   EXPECT_LT(slides(dog.rig, walks, contacts), 0.4f * slides(dog.rig, flies, contacts));
   for (size_t t = 0; t < 5; ++t) EXPECT_EQ((walks[t].root - dog.motion.poses[t].root).norm(), 0) << t;
+}
+
+TEST(MotionGenerator, WhatWalksComesBackToTheGroundHoweverLongItGoesOn) {
+  RiggedMotion dog;
+  dog.rig = make_creature(CreatureKind::Quadruped, 2);
+  dog.motion = creature_motion(CreatureKind::Quadruped, dog.rig, 0, 40, 30, 2);
+  GenerationOptions options;
+  options.engine = "vrnn";
+  options.frames = 200;
+  const auto height = [&](const char* kind) {
+    const auto load = [&](const understudy::Rig&) {
+      return std::make_unique<Sliding>(kind, dog.motion, 0.003f);
+    };
+    return generate_motions(dog, options, load, [](int) { return true; })
+        .motions[0]
+        .motion.poses[199]
+        .root.y();
+  };
+  const float usual = dog.motion.poses[0].root.y();
+  EXPECT_GT(height("hand"), usual + 0.5f);  // it flies
+  EXPECT_NEAR(height("quadruped"), usual, 0.06f);
 }
 
 }  // namespace

@@ -288,6 +288,17 @@ TEST_F(DynamicsFile, KeysAreMetToTheLastBitAndTheSameSeedGoesTheSameWay) {
   }
 }
 
+TEST_F(DynamicsFile, WhatIsRaisedGoesOnFromThere) {
+  const auto dynamics = nn::load_dynamics(file("rotations"));
+  dynamics->begin(rig_);
+  EXPECT_THROW(dynamics->raise(0.1f), Error);
+  dynamics->observe(motion_.poses[0], 1.0 / 30);
+  const auto other = dynamics->clone();
+  other->raise(0.1f);
+  Rng a(1), b(1);
+  EXPECT_NEAR(other->sample(1.0 / 30, b).root.y() - dynamics->sample(1.0 / 30, a).root.y(), 0.1, 1e-4);
+}
+
 TEST_F(DynamicsFile, WeightsOfAnotherFormAreRefused) {
   torch::manual_seed(3);
   nn::VrnnOptions options;
