@@ -54,6 +54,7 @@ std::string one_line(const CaseResult& result) {
                           "made_skate",
                           "made_skate_true",
                           "made_nearest_mm",
+                          "made_nearest_training_mm",
                           "gap_mpjpe_m",
                           "chamfer_m",
                           "seam_m",
@@ -158,8 +159,10 @@ Action declare_eval(CLI::App& command) {
       ->check([](const std::string& name) { return failure_of([&] { motion_space_named(name); }); });
   command.add_option(
       "--data", options->data,
-      "the folder of people and motions that --fill nearest looks into; the folder with the clips of both "
-      "manners, for the baselines of style");
+      "the folder of people and motions that --fill nearest looks into, and in which the motion nearest to a "
+      "made one is looked for (marionette-gaps); the folder with the clips of both manners, for the "
+      "baselines "
+      "of style");
   command.add_option("--judge", options->judge, "weights of `train style-judge` (style)");
   command.add_option("--style-back", options->style_back,
                      "a style that takes back what --style does: there and back again (style)");

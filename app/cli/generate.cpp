@@ -135,8 +135,9 @@ Action declare_generate(CLI::App& command) {
   command.add_option("--count", how.count, "so many motions, each with a seed of its own (default: 1)");
   command.add_option("--engine", how.engine, engine_help());
   command
-      .add_option("--sampling", options->sampling,
-                  "of vrnn with --between: aimed, along a gradient (default); paper, the best of many")
+      .add_option(
+          "--sampling", options->sampling,
+          "of vrnn with --between: aimed, it knows the pose to come (default); paper, the best of many")
       ->check(CLI::IsMember({"aimed", "paper"}));
   command.add_option("--weights", options->weights,
                      "folder of the weights, or one file of vrnn's (default: the program's own)");

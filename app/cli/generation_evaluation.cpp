@@ -4,12 +4,16 @@
 #include <chrono>
 #include <cmath>
 #include <filesystem>
+#include <limits>
 
 #include "app/run/interrupt.hpp"
+#include "app/run/motion_generator.hpp"
 #include "app/run/rig_performance.hpp"
 #include "retarget/base/clock.hpp"
 #include "retarget/base/error.hpp"
 #include "retarget/base/index.hpp"
+#include "retarget/body/clips.hpp"
+#include "retarget/body/data_folder.hpp"
 #include "retarget/marionette/motion_match.hpp"
 #include "retarget/metrics/joint_metrics.hpp"
 #include "retarget/metrics/voxel_metrics.hpp"
@@ -19,7 +23,6 @@ namespace {
 
 constexpr std::array<int, 7> kApart = {3, 5, 10, 15, 20, 25, 30};
 constexpr int kGivenPoses = 5, kMadePoses = 25;
-constexpr int kAimSteps = 20;
 
 /// Every so many frames, from the first.
 std::vector<PoseKey> keys_apart(const RigMotion& motion, int apart) {
@@ -76,9 +79,7 @@ void add_gaps(const RiggedMotion& truth, const std::string& engine, const Betwee
 Between by_network(const RiggedMotion& truth, MotionDynamics& dynamics) {
   return [&](const std::vector<PoseKey>& keys) {
     Rng rng(1);
-    std::vector<RigPose> poses = dynamics.aimed(keys, 1 / truth.motion.fps, kAimSteps, rng);
-    settle_on_keys(truth.rig, truth.motion.fps, keys, poses);
-    return poses;
+    return dynamics.aimed(keys, 1 / truth.motion.fps, rng);
   };
 }
 
@@ -88,19 +89,40 @@ double skate(const understudy::Rig& rig, const std::vector<RigPose>& poses, doub
   return foot_skate(joints, fps);
 }
 
-/// Goes on from the first poses.
-void add_generation(const RiggedMotion& truth, MotionDynamics& dynamics, Metrics& to) {
-  const double dt = 1 / truth.motion.fps;
-  Rng rng(1);
-  dynamics.begin(truth.rig);
-  std::vector<RigPose> poses(truth.motion.poses.begin(), truth.motion.poses.begin() + kGivenPoses);
-  for (const RigPose& pose : poses) dynamics.observe(pose, dt);
+/// How far a person's motion is from the nearest that the training split of a data folder has, metres, as
+/// distance_to_nearest().
+double distance_to_training(const understudy::Rig& rig, const std::vector<RigPose>& made,
+                            const std::string& data) {
+  double nearest = std::numeric_limits<double>::infinity();
+  for (const std::string& folder : read_split(data, "train").motion_folders)
+    for (const Clip& clip : read_clips(folder)) {
+      check_interrupt("while training data was searched");
+      if (clip.motion.poses.size() < made.size()) continue;
+      std::vector<RigPose> poses;
+      for (const Pose& pose : clip.motion.poses)
+        poses.push_back(
+            {pose.root, {pose.local.begin(), pose.local.end()}, std::vector<float>(kJointCount, 0)});
+      nearest = std::min(nearest, distance_to_nearest(rig, made, poses));
+    }
+  return nearest;
+}
+
+/// Goes on from the first poses, as `generate` does.
+void add_generation(const RiggedMotion& truth, MotionDynamics& dynamics, const std::string& data,
+                    Metrics& to) {
+  GenerationOptions options;
+  options.engine = "vrnn";
+  options.frames = kGivenPoses + kMadePoses;
+  const auto load = [&](const understudy::Rig&) { return dynamics.clone(); };
   const auto began = std::chrono::steady_clock::now();
-  for (int t = 0; t < kMadePoses; ++t) poses.push_back(dynamics.sample(dt, rng));
+  const GeneratedMotions motions = generate_motions(truth, options, load, [](int) { return true; });
   to.emplace_back("made_ms", ms_since(began));
+  const std::vector<RigPose>& poses = motions.motions[0].motion.poses;
   const std::vector<RigPose> made(poses.begin() + kGivenPoses, poses.end());
   to.emplace_back("made_nearest_mm", 1000 * distance_to_nearest(truth.rig, made, truth.motion.poses));
   if (dynamics.kind() != "person") return;
+  if (!data.empty())
+    to.emplace_back("made_nearest_training_mm", 1000 * distance_to_training(truth.rig, made, data));
   for (const auto& [key, of] : {std::pair{"made_skate", &made}, {"made_skate_true", &truth.motion.poses}}) {
     const double figure = skate(truth.rig, *of, truth.motion.fps);
     if (std::isfinite(figure)) to.emplace_back(key, figure);
@@ -129,7 +151,7 @@ void evaluate_generation(const Case& c, const EvalOptions& options, CaseResult& 
     if (!std::filesystem::exists(file)) continue;
     const std::unique_ptr<MotionDynamics> dynamics = nn::load_motion_dynamics(file, truth.rig);
     add_gaps(truth, positions ? "positions" : "vrnn", by_network(truth, *dynamics), result.metrics);
-    if (!positions) add_generation(truth, *dynamics, result.metrics);
+    if (!positions) add_generation(truth, *dynamics, options.data, result.metrics);
   }
 }
 

@@ -7,7 +7,9 @@
 #include "retarget/base/error.hpp"
 #include "retarget/base/index.hpp"
 #include "retarget/base/text.hpp"
+#include "retarget/discovery/ground_contacts.hpp"
 #include "retarget/marionette/motion_match.hpp"
+#include "retarget/math/percentile.hpp"
 #include "retarget/math/rotation.hpp"
 
 namespace understudy::app {
@@ -15,7 +17,6 @@ namespace {
 
 constexpr int kMostFrames = 10000, kMostMotions = 100;
 constexpr int kGivenFrames = 5;     // of the clip, that a network goes on from
-constexpr int kAimSteps = 20;       // of the gradient
 constexpr int kTrajectories = 300;  // of the paper's sampling, which has 10,000 on a GPU
 constexpr float kHurry = 1.5f;      // times the fastest of the clip: faster is told
 
@@ -78,26 +79,95 @@ std::vector<RigPose> best_of_many(const RiggedMotion& known, MotionDynamics& dyn
   return best;
 }
 
+float lowest_joint(const understudy::Rig& rig, const RigPose& pose) {
+  return joint_places(rig, bone_motions(rig, pose)).col(1).minCoeff();
+}
+
+/// Says how far from the ground of its clip a body got that a network moves on and on: frame by frame it may
+/// rise a little. Nobody is in the air for longer than a while.
+class GroundLevel {
+ public:
+  explicit GroundLevel(const RiggedMotion& known) : rig_(known.rig) {
+    std::vector<double> lowest;
+    for (const RigPose& pose : known.motion.poses)
+      lowest.push_back(static_cast<double>(lowest_joint(rig_, pose)));
+    constexpr double kLowestPercent = 10;
+    ground_ = static_cast<float>(percentile(lowest, kLowestPercent));
+    constexpr double kLongestInAir = 0.7;  // seconds
+    most_ = std::max<size_t>(1, static_cast<size_t>(kLongestInAir * known.motion.fps));
+  }
+  void see(const RigPose& pose) {
+    lowest_.push_back(lowest_joint(rig_, pose));
+    if (lowest_.size() > most_) lowest_.erase(lowest_.begin());
+  }
+  /// What takes the body back to it, a part a frame, metres: the last pose is to be raised by it.
+  float back() {
+    constexpr float kBackAFrame = 0.2f;
+    const float raised = kBackAFrame * (ground_ - *std::min_element(lowest_.begin(), lowest_.end()));
+    for (float& height : lowest_) height += raised;
+    return raised;
+  }
+
+ private:
+  const understudy::Rig& rig_;
+  float ground_ = 0;
+  size_t most_ = 1;
+  std::vector<float> lowest_;
+};
+
+/// What stands, but slides as a network makes it, stands still: the body goes as its feet push it. The poses
+/// that were given stay.
+void plant_feet(const RiggedMotion& known, size_t given, std::vector<RigPose>& poses) {
+  const std::vector<RigPose>& clip = known.motion.poses;
+  RiggedMotion both{known.rig, {known.motion.fps, clip}};  // on the clip's ground
+  both.motion.poses.insert(both.motion.poses.end(), poses.begin(), poses.end());
+  GroundContacts contacts = ground_contacts(both);
+  contacts.touches.erase(contacts.touches.begin(), contacts.touches.begin() + ssize(clip));
+  both.motion.poses = std::move(poses);
+  stand_on(contacts.ground, contacts.touches, both);
+  poses = std::move(both.motion.poses);
+  std::vector<PoseKey> keys;
+  for (size_t t = 0; t < given; ++t) keys.push_back({static_cast<int>(t), clip[t]});
+  meet_keys(known.rig, known.motion.fps, keys, poses);
+}
+
+/// The clip's first poses, and what may come after them.
+std::vector<RigPose> gone_on(const RiggedMotion& known, int frames, MotionDynamics& dynamics, Rng& rng) {
+  const double dt = 1 / known.motion.fps;
+  dynamics.begin(known.rig);
+  const auto given = std::min({kGivenFrames, frames, static_cast<int>(ssize(known.motion.poses))});
+  std::vector<RigPose> poses(known.motion.poses.begin(), known.motion.poses.begin() + given);
+  GroundLevel level(known);
+  for (const RigPose& pose : poses) {
+    dynamics.observe(pose, dt);
+    level.see(pose);
+  }
+  const std::string kind = dynamics.kind();
+  const bool walks = kind == "person" || kind == "quadruped";  // not a hand in the air
+  while (ssize(poses) < frames) {
+    poses.push_back(dynamics.sample(dt, rng));
+    if (!walks) continue;
+    level.see(poses.back());
+    const float raised = level.back();
+    poses.back().root.y() += raised;
+    dynamics.raise(raised);
+  }
+  if (walks && known.rig.surface.vertices.rows() > 0) plant_feet(known, static_cast<size_t>(given), poses);
+  return poses;
+}
+
 std::vector<RigPose> made_by_network(const RiggedMotion& known, const GenerationOptions& options,
                                      MotionDynamics& dynamics, uint64_t seed) {
   Rng rng(seed);
   const double dt = 1 / known.motion.fps;
   const std::vector<PoseKey> keys = keys_of(known, options);
   if (!keys.empty()) {
-    std::vector<RigPose> poses = options.paper_sampling ? best_of_many(known, dynamics, keys, rng)
-                                                        : dynamics.aimed(keys, dt, kAimSteps, rng);
-    settle_on_keys(known.rig, known.motion.fps, keys, poses);
+    if (!options.paper_sampling) return dynamics.aimed(keys, dt, rng);
+    std::vector<RigPose> poses = best_of_many(known, dynamics, keys, rng);
+    meet_keys(known.rig, known.motion.fps, keys, poses);
     return poses;
   }
-  dynamics.begin(known.rig);
-  std::vector<RigPose> poses;
-  for (const RigPose& pose : known.motion.poses) {
-    if (ssize(poses) == std::min(kGivenFrames, options.frames)) break;
-    dynamics.observe(pose, dt);
-    poses.push_back(pose);
-  }
-  while (ssize(poses) < options.frames) poses.push_back(dynamics.sample(dt, rng));
-  return poses;
+  return gone_on(known, options.frames, dynamics, rng);
 }
 
 std::vector<RigPose> made(const RiggedMotion& known, const GenerationOptions& options,

@@ -42,7 +42,7 @@ struct GenerationOptions {
   uint64_t seed = 1;  ///< of the first; the next one has the next
   int count = 1;      ///< motions
   std::string engine = "match";
-  bool paper_sampling = false;  ///< of networks, between poses: the best of many, in place of one that aims
+  bool paper_sampling = false;  ///< of networks, between poses: the best of many that do not know the last
 };
 constexpr Within<uint64_t> kSeeds{0, 1000000000};  ///< in documents
 /// All but the count: what tells one motion.

@@ -29,6 +29,7 @@ class DynamicsRows {
   Eigen::RowVectorXf places_row(const RigPose& pose, const Eigen::RowVectorXf& row) const;
   Points rest() const;  ///< [J, 3] about the root, sizes
   float size() const { return form_.size(); }
+  const Rig& rig() const { return rig_; }
 
  private:
   Rig rig_, free_;  // as it is; with balls for joints

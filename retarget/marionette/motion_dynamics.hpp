@@ -22,10 +22,12 @@ class MotionDynamics {
   virtual void observe(const RigPose& pose, double dt) = 0;
   /// A pose that may come next; it is the last one from then on. Throws Error before any was observed.
   virtual RigPose sample(double dt, Rng& rng) = 0;
-  /// Frames 0 to the last key's, which come near all keys: the latent steps are moved, `steps` times, along
-  /// the gradient of how far keys are missed. The first key is of frame 0. It begins anew and leaves the
-  /// state after the last.
-  virtual std::vector<RigPose> aimed(const std::vector<PoseKey>& keys, double dt, int steps, Rng& rng) = 0;
+  /// The last pose is so much higher, metres. Throws Error before there was one.
+  virtual void raise(float height) = 0;
+  /// Frames 0 to the last key's, in each key exactly its pose: a way there that this kind of body may take,
+  /// another with another state of `rng`. The first key is of frame 0. It begins anew and leaves the state
+  /// after the last.
+  virtual std::vector<RigPose> aimed(const std::vector<PoseKey>& keys, double dt, Rng& rng) = 0;
   /// A copy that goes its own way.
   virtual std::unique_ptr<MotionDynamics> clone() const = 0;
 };

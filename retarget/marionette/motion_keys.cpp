@@ -153,31 +153,6 @@ std::vector<Points> own_places(const Rig& rig, const std::vector<RigPose>& poses
   return places;
 }
 
-void settle_on_keys(const Rig& rig, double fps, const std::vector<PoseKey>& keys,
-                    std::vector<RigPose>& poses) {
-  constexpr float kDoubt = 3;  // times what keys are missed by
-  check_keys(rig, static_cast<int>(ssize(poses)), keys);
-  std::vector<RigPose> wanted, is;
-  for (const PoseKey& key : keys) {
-    wanted.push_back(key.pose);
-    is.push_back(poses[static_cast<size_t>(key.frame)]);
-  }
-  const std::vector<Points> at_keys = own_places(rig, wanted), found = own_places(rig, is);
-  const auto apart = [](const Points& a, const Points& b) { return (a - b).rowwise().norm().mean(); };
-  float missed = 0;
-  for (size_t k = 1; k < keys.size(); ++k)
-    missed += apart(at_keys[k], found[k]) / static_cast<float>(keys.size() - 1);
-  meet_keys(rig, fps, keys, poses);
-  if (keys.size() < 2) return;
-  const std::vector<RigPose> even = slerp_between(rig, keys, static_cast<int>(ssize(poses)));
-  for (size_t k = 0; k + 1 < keys.size(); ++k) {
-    const float moved = apart(at_keys[k], at_keys[k + 1]), doubt = kDoubt * missed;
-    const float share = moved * moved / (moved * moved + doubt * doubt + 1e-12f);
-    for (auto t = static_cast<size_t>(keys[k].frame) + 1; t < static_cast<size_t>(keys[k + 1].frame); ++t)
-      poses[t] = between(even[t], poses[t], share);
-  }
-}
-
 std::vector<RigPose> slerp_between(const Rig& rig, const std::vector<PoseKey>& keys, int frames) {
   US_CHECK(!keys.empty(), "there is no key to begin with");
   check_keys(rig, frames, keys);

@@ -23,12 +23,6 @@ void meet_keys(const Rig& rig, double fps, const std::vector<PoseKey>& keys, std
 /// Joints about the root of poses that all face +z, [T] of [J, 3].
 std::vector<Points> own_places(const Rig& rig, const std::vector<RigPose>& poses);
 
-/// meet_keys() of a motion that only comes near its keys, as a network makes it: what it knows no better than
-/// it misses the keys by, joints of one way are turned evenly. A gap's share of the motion is d^2 / (d^2 +
-/// (3 r)^2), d how far its keys' joints are apart, r how far the motion misses keys, both about the root.
-void settle_on_keys(const Rig& rig, double fps, const std::vector<PoseKey>& keys,
-                    std::vector<RigPose>& poses);
-
 /// So many frames: between two keys every joint turns the shortest way, evenly, and the root goes straight;
 /// before the first and after the last it stands still. keys: by rising frames, at least one.
 std::vector<RigPose> slerp_between(const Rig& rig, const std::vector<PoseKey>& keys, int frames);

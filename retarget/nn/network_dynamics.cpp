@@ -16,8 +16,7 @@
 namespace understudy::nn {
 namespace {
 
-constexpr double kAimRate = 0.15, kAimTurns = 0.1, kAimEffort = 2e-4;
-constexpr float kAimSpread = 0.3f;  // standard deviations of the prior that it begins from
+constexpr float kAimSpread = 0.3f;  // standard deviations of the prior, between keys
 
 torch::Tensor one_row(const Eigen::RowVectorXf& row) {
   return torch::from_blob(const_cast<float*>(row.data()), {1, row.size()}).clone();
@@ -46,21 +45,19 @@ class NetworkDynamics final : public MotionDynamics {
   void begin(const Rig& rig) override;
   void observe(const RigPose& pose, double dt) override;
   RigPose sample(double dt, Rng& rng) override;
-  std::vector<RigPose> aimed(const std::vector<PoseKey>& keys, double dt, int steps, Rng& rng) override;
+  void raise(float height) override;
+  std::vector<RigPose> aimed(const std::vector<PoseKey>& keys, double dt, Rng& rng) override;
   std::unique_ptr<MotionDynamics> clone() const override { return std::make_unique<NetworkDynamics>(*this); }
 
  private:
   NetworkDynamics(const std::string& path, const WeightsHeader& header);
   Eigen::RowVectorXf seen_row(const RigPose& pose, double dt) const;
   void put(const torch::Tensor& row, double dt);
-  torch::Tensor rolled(const torch::Tensor& effort, double dt);
-  torch::Tensor missed(const torch::Tensor& rows, const std::vector<PoseKey>& keys, double dt) const;
+  torch::Tensor way_through(const std::vector<PoseKey>& keys) const;
 
   RotationVrnn net_{nullptr};
   std::string kind_, bones_;
-  std::vector<int> parents_;
   std::shared_ptr<const DynamicsRows> form_;
-  torch::Tensor rest_;
   VrnnState state_;
   std::optional<RigPose> last_;
 };
@@ -85,11 +82,7 @@ NetworkDynamics::NetworkDynamics(const std::string& path, const WeightsHeader& h
 void NetworkDynamics::begin(const Rig& rig) {
   US_CHECK(bones_of(rig) == bones_ && rig.count() == net_->options().joints, rig.name,
            ": its bones are not those of the kind \"", kind_, "\"");
-  parents_.clear();
-  for (const RigJoint& joint : rig.joints) parents_.push_back(joint.parent);
   form_ = std::make_shared<DynamicsRows>(rig);
-  const Points rest = form_->rest();
-  rest_ = torch::from_blob(const_cast<float*>(rest.data()), {1, rest.rows(), 3}).clone();
   state_ = net_->begin(1, torch::kCPU);
   last_.reset();
 }
@@ -103,9 +96,7 @@ void NetworkDynamics::observe(const RigPose& pose, double dt) {
   US_CHECK(form_, "nothing was begun");
   const torch::NoGradGuard no_grad;
   const auto x = one_row(seen_row(pose, dt)), step = seconds(dt);
-  const auto z = net_->posterior(state_, x, step).mean;
-  net_->advance(net_->decoded(z, state_, step), z, step, state_);
-  state_.last = x;  // it is known
+  net_->advance(x, net_->prior(state_, net_->nothing_ahead(1, torch::kCPU), step).mean, step, state_);
   last_ = pose;
 }
 
@@ -120,86 +111,62 @@ RigPose NetworkDynamics::sample(double dt, Rng& rng) {
   US_CHECK(last_, "no pose was observed to go on from");
   const torch::NoGradGuard no_grad;
   const auto step = seconds(dt);
-  const Gaussian p = net_->prior(state_, step);
+  const AheadStep nothing = net_->nothing_ahead(1, torch::kCPU);
+  const Gaussian p = net_->prior(state_, nothing, step);
   const auto z = p.mean + p.deviation * normals(p.mean.size(1), rng);
-  const auto row = net_->decoded(z, state_, step);
+  const auto row = net_->decoded(z, state_, nothing, step);
   net_->advance(row, z, step, state_);
   put(row, dt);
   return *last_;
 }
 
-/// Rows [1, N, width] that follow the state under these steps of z [1, N, latent], in the prior's deviations.
-torch::Tensor NetworkDynamics::rolled(const torch::Tensor& effort, double dt) {
-  VrnnState state = state_;
-  const auto step = seconds(dt);
-  std::vector<torch::Tensor> rows;
-  for (int64_t t = 0; t < effort.size(1); ++t) {
-    const Gaussian p = net_->prior(state, step);
-    const auto z = p.mean + p.deviation * effort.select(1, t);
-    rows.push_back(net_->decoded(z, state, step));
-    net_->advance(rows.back(), z, step, state);
-  }
-  state_.hidden = state.hidden.detach();
-  state_.last = state.last.detach();
-  return torch::stack(rows, 1);
+void NetworkDynamics::raise(float height) {
+  US_CHECK(last_, "no pose was observed to raise");
+  last_->root.y() += height;
+  state_.last = state_.last.clone();
+  state_.last[0][RotationVrnnImpl::kRoot - 1] += height / form_->size();
 }
 
-/// How far joints and rotations are from the keys after the first, squared. rows: of the first key, too.
-torch::Tensor NetworkDynamics::missed(const torch::Tensor& rows, const std::vector<PoseKey>& keys,
-                                      double dt) const {
-  const auto places = row_places(*net_, rows, rest_, parents_);
-  const RootWay way = root_way(rows, torch::full({1, rows.size(1)}, dt));
+/// [1, T, width], the first key at the origin and facing along +z; zeros between keys.
+torch::Tensor NetworkDynamics::way_through(const std::vector<PoseKey>& keys) const {
+  auto way = torch::zeros({1, keys.back().frame + 1, net_->width()});
   const RigPose& start = keys.front().pose;
-  const float heading = heading_of(start.turns[0]);
-  auto off = torch::zeros({});
-  for (size_t k = 1; k < keys.size(); ++k) {
-    const RigPose& pose = keys[k].pose;
-    const int64_t t = keys[k].frame;
-    const auto wanted = one_row(form_->places_row(pose, form_->first_row(pose)))
-                            .slice(-1, RotationVrnnImpl::kRoot)
-                            .view({-1, 3});
-    off = off + squared_error(places[0][t], wanted);
-    const Vec3 gone = rotation_about_y(-heading) * (pose.root - start.root) / form_->size();
-    const auto root = torch::tensor({gone.x(), pose.root.y() / form_->size(), gone.z()});
-    const float turned = std::remainder(heading_of(pose.turns[0]) - heading, 2 * kPi);
-    off =
-        off + static_cast<double>(parents_.size()) * ((way.places[0][t] - root).square().sum() +
-                                                      kAimTurns * (1 - (way.headings[0][t] - turned).cos()));
-    if (net_->options().positions) continue;
-    const auto turns = row_turns(one_row(form_->first_row(pose)));
-    off = off + kAimTurns * (row_turns(rows[0][t].unsqueeze(0)) - turns).square().sum();
+  const float first = heading_of(start.turns[0]);
+  float heading = 0;
+  for (const PoseKey& key : keys) {
+    Eigen::RowVectorXf row = form_->first_row(key.pose);
+    if (net_->options().positions) row = form_->places_row(key.pose, row);
+    const Vec3 gone = rotation_about_y(-first) * (key.pose.root - start.root) / form_->size();
+    heading += std::remainder(heading_of(key.pose.turns[0]) - first - heading, 2 * kPi);
+    row.head<3>() << gone.x(), gone.z(), heading;
+    way[0][key.frame] = one_row(row)[0];
   }
-  return off;
+  return way;
 }
 
-std::vector<RigPose> NetworkDynamics::aimed(const std::vector<PoseKey>& keys, double dt, int steps,
-                                            Rng& rng) {
+std::vector<RigPose> NetworkDynamics::aimed(const std::vector<PoseKey>& keys, double dt, Rng& rng) {
   US_CHECK(form_, "nothing was begun");
   US_CHECK(keys.size() >= 2 && keys.front().frame == 0, "it is aimed from a pose at frame 0 to a later one");
+  const torch::NoGradGuard no_grad;
+  const int64_t frames = keys.back().frame + 1;
+  auto known = torch::zeros({1, frames}, torch::kBool);
+  for (const PoseKey& key : keys) known[0][key.frame] = true;
+  const Ahead ahead = net_->ahead(way_through(keys), known, torch::full({1, frames}, dt));
   state_ = net_->begin(1, torch::kCPU);
   last_.reset();
   observe(keys.front().pose, dt);
-  const VrnnState start = state_;
-  const int64_t frames = keys.back().frame;
-  auto effort = (kAimSpread * normals(frames * net_->options().latent, rng))
-                    .view({1, frames, net_->options().latent})
-                    .requires_grad_(true);
-  torch::optim::Adam optimizer({effort}, torch::optim::AdamOptions(kAimRate));
-  for (int i = 0; i < steps; ++i) {
-    state_ = start;
-    const auto rows = torch::cat({start.last.unsqueeze(1), rolled(effort, dt)}, 1);
-    optimizer.zero_grad();
-    (missed(rows, keys, dt) + kAimEffort * effort.square().sum()).backward();
-    optimizer.step();
-  }
-  const torch::NoGradGuard no_grad;
-  state_ = start;
-  const auto rows = rolled(effort, dt);
   std::vector<RigPose> poses = {keys.front().pose};
-  for (int64_t t = 0; t < frames; ++t) {
-    put(rows.select(1, t), dt);
+  const auto step = seconds(dt);
+  for (int64_t t = 1; t < frames; ++t) {
+    const AheadStep to = step_of(ahead, t);
+    const Gaussian p = net_->prior(state_, to, step);
+    const auto z = p.mean + kAimSpread * p.deviation * normals(p.mean.size(1), rng);
+    const auto row = net_->decoded(z, state_, to, step);
+    net_->advance(row, z, step, state_);
+    put(row, dt);
     poses.push_back(*last_);
   }
+  meet_keys(form_->rig(), 1 / dt, keys, poses);  // to the last bit
   return poses;
 }
 

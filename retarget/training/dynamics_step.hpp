@@ -7,19 +7,32 @@
 
 namespace understudy::training {
 
-/// Squared angles between rotations [..., J, 3, 3], radians, summed over J and averaged over all else.
-torch::Tensor squared_angles(const torch::Tensor& a, const torch::Tensor& b);
+/// Between rotations [..., J, 3, 3]: 2 sqrt(2) sin(angle / 2), summed over J, [...].
+torch::Tensor turn_error(const torch::Tensor& a, const torch::Tensor& b);
 
 /// Rows as the network's form has them: as they are, or with places.
 torch::Tensor rows_for(const nn::RotationVrnnImpl& net, const DynamicsBatch& batch,
                        const std::vector<int>& parents);
 
-/// Of sequences that are followed by the posterior: places through forward kinematics and rotations, the
-/// root's way, and the divergence of the posterior from the prior.
+/// Joints on the floor that a way stands on, sizes, [B, T, J, 3]: places about the root [B, T, J, 3] taken to
+/// where the root is.
+torch::Tensor world_places(const torch::Tensor& way, const torch::Tensor& places);
+
+/// Errors of velocities [..., J, 3] in sizes a second, summed over the joints, [...]; those of joints that
+/// stand in truth count more, or feet slide.
+torch::Tensor velocity_error(const torch::Tensor& truth, const torch::Tensor& made);
+
+/// Of sequences whose known frames are told: places through forward kinematics and rotations, the root's
+/// way, velocities, and the divergence of the posterior from the prior. Where keys are known two sequences of
+/// three follow the prior's means, as a network does that fills a gap (after Sohn, Lee, Yan: Learning
+/// Structured Output Representation using Deep Conditional Generative Models, NeurIPS 2015, eq. 6); the
+/// others follow the posterior.
 LossSum dynamics_loss(nn::RotationVrnn& net, const DynamicsBatch& batch, const std::vector<int>& parents);
 
-/// Joints, in thousandths of the body's size: of frames that the posterior saw, of the tenth one that the
-/// prior's means say after ten seen, and of a body that stands still instead; the divergence.
-Figures dynamics_figures(nn::RotationVrnn& net, const DynamicsBatch& batch, const std::vector<int>& parents);
+/// Joints, in thousandths of the body's size. Of a batch with keys: frames between them, as the network
+/// makes them and as the curve through them says. Of one with a beginning: the tenth frame after it that the
+/// prior's means say, and of a body that stands still instead.
+Figures between_figures(nn::RotationVrnn& net, const DynamicsBatch& batch, const std::vector<int>& parents);
+Figures ahead_figures(nn::RotationVrnn& net, const DynamicsBatch& batch, const std::vector<int>& parents);
 
 }  // namespace understudy::training

@@ -1,10 +1,15 @@
+#include <array>
+
 #include "retarget/training/dynamics_step.hpp"
 #include "retarget/training/training_run.hpp"
 
 namespace understudy::training {
 namespace {
 
-constexpr int kDynamicsBatch = 32, kDynamicsFrames = 30, kDynamicsFigureCases = 96;
+constexpr int kDynamicsBatch = 48, kDynamicsFigureCases = 96;
+constexpr int kGoesOnFrames = 31;                          // of sequences without keys
+constexpr std::array<int, 3> kKeyedFrames = {31, 46, 61};  // of those with keys
+constexpr float kKeyedShare = 0.67f;                       // of the batches
 constexpr int64_t kUsualMotions = 120000;
 
 Schedule dynamics_schedule() {
@@ -26,8 +31,9 @@ class DynamicsTrainer final : public TrainingRun {
         net_(form(options, data_)),
         average_(form(options, data_)) {
     Rng figures(1);
-    dev_ = DynamicsData(options.kind, options.data, Split::Dev)
-               .batch(kDynamicsFigureCases, kDynamicsFrames, figures);
+    DynamicsData dev(options.kind, options.data, Split::Dev);
+    dev_between_ = placed(dev.batch(kDynamicsFigureCases, kKeyedFrames.back(), Known::Keys, figures));
+    dev_ahead_ = placed(dev.batch(kDynamicsFigureCases, kGoesOnFrames, Known::Beginning, figures));
     net_->to(device());
     average_->to(device());
     average_->eval();
@@ -44,16 +50,26 @@ class DynamicsTrainer final : public TrainingRun {
     return form;
   }
   DynamicsBatch placed(const DynamicsBatch& batch) const {
-    return {batch.rows.to(device()), batch.dt.to(device()), batch.rest.to(device())};
+    return {batch.rows.to(device()), batch.dt.to(device()), batch.rest.to(device()), batch.known};
   }
   Step learn() override {
     const int count = options_.batch > 0 ? options_.batch : kDynamicsBatch;
+    const bool keyed = rng_.uniform(0, 1) < kKeyedShare;
+    const int frames =
+        keyed ? kKeyedFrames[static_cast<size_t>(rng_.below(static_cast<int>(kKeyedFrames.size())))]
+              : kGoesOnFrames;
     const LossSum loss =
-        dynamics_loss(net_, placed(data_.batch(count, kDynamicsFrames, rng_)), data_.parents());
+        dynamics_loss(net_, placed(data_.batch(count, frames, keyed ? Known::Keys : Known::Beginning, rng_)),
+                      data_.parents());
     loss.total.backward();
     return {count, loss.parts};
   }
-  Figures evaluate() override { return dynamics_figures(average_, placed(dev_), data_.parents()); }
+  Figures evaluate() override {
+    Figures figures = between_figures(average_, dev_between_, data_.parents());
+    const Figures ahead = ahead_figures(average_, dev_ahead_, data_.parents());
+    figures.insert(figures.end(), ahead.begin(), ahead.end());
+    return figures;
+  }
   nn::WeightsHeader header() const override {
     return {nn::kDynamicsWeights,
             nn::kDynamicsVersion,
@@ -67,7 +83,7 @@ class DynamicsTrainer final : public TrainingRun {
   nn::MarionetteDynamicsTrainOptions options_;
   Rng rng_;
   DynamicsData data_;
-  DynamicsBatch dev_;
+  DynamicsBatch dev_between_, dev_ahead_;
   nn::RotationVrnn net_, average_;
 };
 

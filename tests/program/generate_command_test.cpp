@@ -120,7 +120,7 @@ TEST_F(Generate, WeightsThatAreMissing) {
 TEST_F(Generate, ARigUnlikeTheKind) {
   const std::string weights = scratch.path("other.weights");
   const Json header = {{"kind", "marionette-dynamics"},
-                       {"version", 1},
+                       {"version", 2},
                        {"numbers", Json::object()},
                        {"texts", {{"kind", "hand"}, {"bones", "palm:;thumb:palm;"}}},
                        {"tensors", Json::array()}};

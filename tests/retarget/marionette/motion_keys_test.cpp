@@ -68,20 +68,6 @@ TEST(MotionKeys, BeforeAndAfterKeysTheWholeIsMovedAndPosesFade) {
   EXPECT_NEAR(rotation_to_axis_angle(poses[20].turns[1]).z(), 0.25, 1e-4);
 }
 
-TEST(MotionKeys, AMotionThatMissesItsKeysCountsAsLittleAsItMissesThem) {
-  const Rig rig = two_bones();
-  const std::vector<PoseKey> keys = {{0, bent(rig, 0)}, {4, bent(rig, 0.4f)}};
-  std::vector<RigPose> sure(5, bent(rig, 0)), unsure(5, bent(rig, 0));
-  sure[2] = bent(rig, 0.3f), sure[4] = bent(rig, 0.4f);
-  unsure[2] = bent(rig, 0.3f), unsure[4] = bent(rig, 0.8f);
-  settle_on_keys(rig, 30, keys, sure);
-  settle_on_keys(rig, 30, keys, unsure);
-  EXPECT_NEAR(rotation_to_axis_angle(sure[2].turns[1]).z(), 0.3, 1e-4);
-  // The tip moves by about 0.4 and is missed by about 0.4: a tenth of the motion, which is 0.1 after it was
-  // bent to its keys, in place of 0.2.
-  EXPECT_NEAR(rotation_to_axis_angle(unsure[2].turns[1]).z(), 0.19, 2e-3);
-}
-
 TEST(MotionKeys, KeysThatDoNotFitAreRefused) {
   const Rig rig = two_bones();
   EXPECT_THROW(check_keys(rig, 5, {{5, bent(rig, 0)}}), Error);
