@@ -70,6 +70,16 @@ TEST_F(TwoLamps, TheSecondDoesWhatTheFirstDid) {
   EXPECT_LT(2 * error, error_pct(*target, *source, target->rig));  // than what it did itself
 }
 
+TEST_F(TwoLamps, TheSecondDoesAnotherMotionOfTheFirst) {
+  const BoneMatches matches = same_bones(target->rig.count());
+  const RigMotion other = creature_motion(CreatureKind::Lamp, source->rig, 1, kClip / 2, 15, 7);
+  RigRetargetOptions options;
+  options.motion = &other;
+  const RiggedMotion performed = performed_by(*source, *target, *laid, matches, options);
+  ASSERT_EQ(performed.motion.poses.size(), static_cast<size_t>(kClip / 2));
+  EXPECT_LT(error_pct(performed, {source->rig, other}, target->rig), 2.5);
+}
+
 TEST_F(TwoLamps, ABoneWithoutAPartnerGoesWithItsNeighbours) {
   BoneMatches matches = match_bones(bone_costs(*laid, *source, *target), source->rig, target->rig);
   const int last = target->rig.count() - 1;
