@@ -58,13 +58,15 @@ struct SkeletonView {
   std::vector<Side> sides;   ///< [J]; empty: all middle
   Vec3 tint = Vec3::Zero();  ///< mixed into the sides' colours,
   float tint_share = 0;      ///< by so much
+  Points colors{0, 3};       ///< [J, 3] of balls that mark the joints, larger ones on grey bones; empty: none
   float thickness = 1;       ///< of bones and balls, 1 fits an adult
   bool x_ray = true;         ///< seen through everything else
   float opacity = 1;
 };
 template <class V, class S>
 FieldsOf<S, SkeletonView> fields(V& visit, S& s) {
-  unnamed(visit, s.joints, s.parents, s.sides, s.tint, s.tint_share, s.thickness, s.x_ray, s.opacity);
+  unnamed(visit, s.joints, s.parents, s.sides, s.tint, s.tint_share, s.colors, s.thickness, s.x_ray,
+          s.opacity);
 }
 
 /// Lines in space: trails, boxes.

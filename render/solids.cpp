@@ -117,6 +117,7 @@ MeshView Solids::mesh() const {
 namespace {
 
 constexpr float kBallRadius = 0.021f;  // metres, at thickness 1
+constexpr float kMarkRadius = 0.038f;  // of balls in colours of their own
 constexpr float kBoneRadius = 0.026f;  // at a bone's thickest
 
 /// Thin at both ends, thickest a sixth of the way from the parent, so that it shows which way it points.
@@ -147,6 +148,8 @@ void check(const SkeletonView& view) {
            " parents");
   US_CHECK(view.sides.empty() || view.sides.size() == joints, "a skeleton of ", joints, " joints has ",
            view.sides.size(), " sides");
+  US_CHECK(view.colors.rows() == 0 || view.colors.rows() == view.joints.rows(), "a skeleton of ", joints,
+           " joints has ", view.colors.rows(), " colours");
   for (int parent : view.parents)
     US_CHECK(parent >= -1 && parent < static_cast<int>(joints), "a skeleton of ", joints,
              " joints has a parent ", parent);
@@ -161,7 +164,10 @@ MeshView skeleton_solids(const SkeletonView& view) {
     const Vec3 here = view.joints.row(j);
     if (!here.allFinite()) continue;
     const Vec3 color = color_of(view, j);
-    solids.add_ball(here, kBallRadius * view.thickness, color);
+    if (view.colors.rows() == 0)
+      solids.add_ball(here, kBallRadius * view.thickness, color);
+    else
+      solids.add_ball(here, kMarkRadius * view.thickness, view.colors.row(static_cast<Eigen::Index>(j)));
     if (view.parents[j] < 0) continue;
     const Vec3 parent = view.joints.row(view.parents[j]);
     if (parent.allFinite()) add_bone(solids, parent, here, view.thickness, color);

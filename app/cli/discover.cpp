@@ -126,6 +126,8 @@ void tell(const DiscoveredRig& rig) {
   const auto doubted = std::count(rig.doubted.begin(), rig.doubted.end(), true);
   if (doubted > 0)
     std::printf("%td of %td frames fit clearly worse or could not be used\n", doubted, ssize(rig.doubted));
+  if (rig.seen_once())
+    std::printf("seen in one frame: its joints are where the network sees them, no motion has shown them\n");
   if (!rig.complete) std::printf("ended early: this is the best that was found by then\n");
 }
 

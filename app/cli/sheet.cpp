@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <map>
 #include <optional>
 
 #include "app/cli/commands.hpp"
@@ -11,8 +12,10 @@
 #include "app/run/exports.hpp"
 #include "app/run/flat_performance.hpp"
 #include "app/run/interrupt.hpp"
+#include "app/run/rig_performance.hpp"
 #include "app/run/source.hpp"
 #include "app/stimuli/stage.hpp"
+#include "render/colors.hpp"
 #include "render/contact_sheet.hpp"
 #include "render/image.hpp"
 #include "retarget/base/error.hpp"
@@ -32,6 +35,7 @@ struct SheetCommand {
   std::optional<double> seconds;  ///< none: to the end
   double angle_deg = 33;          ///< from ahead of them to their right
   int columns = 12;
+  bool bones = false;
 };
 
 /// What is on a sheet.
@@ -131,6 +135,66 @@ SheetContent content_of_files(const SheetCommand& command) {
     content.rows.back().caption = std::filesystem::path(files[i].path).stem().string();
   }
   content.yaw = facing.value_or(0) - static_cast<float>(command.angle_deg) * kPi / 180;
+  return content;
+}
+
+/// The same colour for the same name on all of a sheet: the next one of the categories; when they are used up
+/// the same again, darker.
+class NameColors {
+ public:
+  Vec3 of(const std::string& name) {
+    const size_t i = numbers_.try_emplace(name, numbers_.size()).first->second;
+    constexpr size_t kCount = render::kCategories.size();
+    return std::pow(0.55f, static_cast<float>(i / kCount)) * render::kCategories[i % kCount];
+  }
+
+ private:
+  std::map<std::string, size_t> numbers_;
+};
+
+/// A rig in a pose, as large as every other one, its joints marked.
+render::StripMoment moment_of(const RiggedMotion& body, size_t frame, NameColors& colors) {
+  constexpr float kAdult = 2;  // diagonal of an adult's box, metres
+  const understudy::Rig& rig = body.rig;
+  const float scale = kAdult / std::max(1e-6f, box_diagonal(rig.surface.vertices));
+  const BoneMotions bones = bone_motions(rig, body.motion.poses[frame]);
+  render::StripMoment moment;
+  moment.mesh = {scale * skinned(rig.surface.vertices, rig.skin, bones), rig.surface.faces};
+  render::SkeletonView& skeleton = moment.skeleton.emplace();
+  skeleton.joints = scale * joint_places(rig, bones);
+  skeleton.colors.resize(rig.count(), 3);
+  for (const RigJoint& joint : rig.joints) {
+    skeleton.colors.row(static_cast<Eigen::Index>(skeleton.parents.size())) =
+        colors.of(joint.name).transpose();
+    skeleton.parents.push_back(joint.parent);
+  }
+  return moment;
+}
+
+/// A row a rig.
+SheetContent content_of_rigs(const SheetCommand& command) {
+  std::vector<RiggedMotion> rigs;
+  std::vector<SheetFile> files;
+  double length_s = 0;
+  for (const std::string& text : command.paths) {
+    const SheetFile& file = files.emplace_back(file_of(text));
+    const RiggedMotion& rig = rigs.emplace_back(read_rig(file.path));
+    length_s =
+        std::max(length_s, static_cast<double>(rig.motion.poses.size() - 1) / rig.motion.fps - file.from_s);
+  }
+  SheetContent content;
+  content.times = sheet_times(command, length_s);
+  NameColors colors;
+  for (size_t i = 0; i < rigs.size(); ++i) {
+    render::StripRow& row = content.rows.emplace_back();
+    row.caption = std::filesystem::path(files[i].path).stem().string();
+    for (const double time : content.times) {
+      const auto frame = static_cast<size_t>(std::lround((time + files[i].from_s) * rigs[i].motion.fps));
+      row.moments.push_back(frame < rigs[i].motion.poses.size() ? moment_of(rigs[i], frame, colors)
+                                                                : render::StripMoment{});
+    }
+  }
+  content.yaw = -static_cast<float>(command.angle_deg) * kPi / 180;
   return content;
 }
 
@@ -249,9 +313,12 @@ int make_sheet(const SheetCommand& command) {
   const bool study = file_suffix(command.paths[0]) == ".study";
   US_CHECK(!study || command.paths.size() == 1, command.paths[0], ": a study is shown by itself");
   US_CHECK(study || command.motion.empty(), "--motion is of a study");
-  if (!study && std::all_of(command.paths.begin(), command.paths.end(), is_flat_row))
+  US_CHECK(!study || !command.bones, "--bones is of rigs, not of a study");
+  if (!study && !command.bones && std::all_of(command.paths.begin(), command.paths.end(), is_flat_row))
     return make_flat_sheet(command);
-  SheetContent content = study ? content_of_study(command) : content_of_files(command);
+  SheetContent content = study           ? content_of_study(command)
+                         : command.bones ? content_of_rigs(command)
+                                         : content_of_files(command);
   name_rows(command, content.rows);
   content.rows[0].color = render::SheetOptions().source_color;
   render::StripOptions options;
@@ -287,6 +354,10 @@ Action declare_sheet(CLI::App& app) {
       ->check(CLI::Range(-180.0, 180.0));
   app.add_option("--columns", command->columns, "moments beside each other; more go on below (default: 12)")
       ->check(CLI::Range(1, 60));
+  app.add_flag(
+      "--bones", command->bones,
+      "the files are rigs (.glb, .gltf): with their joints, those of one name in one colour, each rig "
+      "as large as the others");
   app.add_option("--motion", command->motion, "of a study (default: its first)");
   app.add_option("--weights", command->weights, "folder of the weights (default: beside the program)");
   return [command] { return make_sheet(*command); };

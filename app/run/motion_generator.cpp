@@ -33,7 +33,7 @@ float over_floor(const RigPose& a, const RigPose& b) {
 }
 
 /// Where the keys are farther apart than the clip's body ever went in that time.
-std::string hurry_of(const RiggedMotion& known, const GenerationOptions& options) {
+std::string hurry_of(const RiggedMotion& known, const GenerationOptions& options, int first_frame) {
   if (!options.between) return "";
   const std::vector<RigPose>& poses = known.motion.poses;
   float fastest = 0;
@@ -45,8 +45,8 @@ std::string hurry_of(const RiggedMotion& known, const GenerationOptions& options
   return printed(
       "frames %d and %d are %.2f m apart: in %d frames %s goes %.1f m/s, and never above %.1f in "
       "its clip, so feet will slide",
-      options.between->first, options.between->last, static_cast<double>(apart), options.frames,
-      known.rig.name.c_str(), static_cast<double>(needed) * known.motion.fps,
+      first_frame + options.between->first, first_frame + options.between->last, static_cast<double>(apart),
+      options.frames, known.rig.name.c_str(), static_cast<double>(needed) * known.motion.fps,
       static_cast<double>(fastest) * known.motion.fps);
 }
 
@@ -221,12 +221,13 @@ void check_generation(const RiggedMotion& known, const GenerationOptions& option
 }
 
 GeneratedMotions generate_motions(const RiggedMotion& known, const GenerationOptions& options,
-                                  const DynamicsLoader& load, const std::function<bool(int)>& going_on) {
+                                  const DynamicsLoader& load, const std::function<bool(int)>& going_on,
+                                  int first_frame) {
   check_generation(known, options);
   std::unique_ptr<MotionDynamics> dynamics;
   if (generation_engine_named(options.engine).needs_weights) dynamics = load(known.rig);
   GeneratedMotions all;
-  all.remark = hurry_of(known, options);
+  all.remark = hurry_of(known, options, first_frame);
   for (int i = 0; i < options.count && going_on(i); ++i) {
     GeneratedMotion one;
     one.seed = options.seed + static_cast<uint64_t>(i);

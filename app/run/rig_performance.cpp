@@ -133,7 +133,7 @@ LaidOther laid_other(const RiggedMotion& first, const OtherBody& other) {
 BoneMatches matches_of(const LaidOther& other, const understudy::Rig& first,
                        const std::vector<ChosenMatch>& chosen) {
   if (other.is_scan) return same_bones(first.count());
-  BoneMatches matches = match_bones(other.costs);
+  BoneMatches matches = match_bones(other.costs, first, other.body.rig);
   const auto part = [&](size_t k) { matches.partner[k] = -1, matches.cost[k] = 0; };
   for (const ChosenMatch& match : chosen) {
     const int j = bone_named(first, match.bone), k = bone_named(other.body.rig, match.partner);

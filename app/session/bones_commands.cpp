@@ -67,7 +67,7 @@ void name_bones(Call& c) {
 void export_found(Call& c) {
   const DiscoveredRig& rig = rig_of(c);
   const MadeMotionsState& made = c.session.made_motions;
-  std::vector<RigClip> clips;
+  std::vector<RigClip> clips = {{kFoundClip, rig.found.motion}};
   for (size_t i = 0; i < c.document.bones.clips.size() && is_rig_file(c.path(0)); ++i) {
     const MadeClip& clip = c.document.bones.clips[i];
     US_CHECK(i < made.clips.size() && made.clips[i], "the clip \"", clip.name, "\" is not made",
@@ -212,18 +212,14 @@ size_t bone_number(const Call& c, size_t i, const understudy::Rig& rig) {
   return static_cast<size_t>(number);
 }
 
-void export_rig(Call& c, const std::shared_ptr<const RiggedMotion>& rig, std::vector<RigClip> more) {
+void export_rig(Call& c, const std::shared_ptr<const RiggedMotion>& rig, std::vector<RigClip> clips) {
   const std::string path = c.path(0);
   check_rig_path(path);
   check_not_read(path, files_read_by(c.document));
   check_writable(path);
   c.studio.jobs().start(
       "Exporting " + file_name(path),
-      [path, rig, more = std::move(more)](JobControl&) {
-        std::vector<RigClip> clips = {{kFoundClip, rig->motion}};
-        clips.insert(clips.end(), more.begin(), more.end());
-        write_rig(path, rig->rig, clips);
-      },
+      [path, rig, clips = std::move(clips)](JobControl&) { write_rig(path, rig->rig, clips); },
       [&studio = c.studio, path] { studio.notify("Exported " + file_name(path), false, showing(path)); });
   remember_folder(c.studio, path);
 }

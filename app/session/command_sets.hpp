@@ -117,9 +117,11 @@ std::optional<std::string> flat_target_file(const std::string& path);
 const DiscoveredRig& rig_of(const Call& c);
 /// A bone of a rig by name or number. Throws Error where it has no such bone.
 size_t bone_number(const Call& c, size_t i, const understudy::Rig& rig);
-/// Writes a rig to the call's path, in the background; `more`: clips beside its motion, of glTF alone. Throws
-/// Error where that cannot be.
-void export_rig(Call& c, const std::shared_ptr<const RiggedMotion>& rig, std::vector<RigClip> more = {});
+/// A clip of the document by the name or number that is the call's first word. Throws Error where none is.
+MadeClip& kept_clip(Call& c);
+/// Writes a rig with clips to the call's path, in the background; several in glTF alone. Throws Error where
+/// that cannot be.
+void export_rig(Call& c, const std::shared_ptr<const RiggedMotion>& rig, std::vector<RigClip> clips);
 
 /// The folder that a file or folder was opened from or saved in, for the next time; not that of the samples.
 void remember_folder(Studio& studio, const std::string& path);

@@ -67,11 +67,13 @@ constexpr int kMostBones = 300;  ///< that may be asked for
 struct SecondBody {
   std::string path;  ///< a rig that was found before, one scan, or a folder of scans; empty: there is none
   std::vector<ChosenMatch> matches;  ///< put over those that are found
+  std::string clip{};                ///< the kept one that it performs; empty: what was found
 };
 template <class V, class S>
 FieldsOf<S, SecondBody> fields(V& visit, S& second) {
   visit("path", second.path, FilePath{});
   visit("matches", second.matches);
+  visit("clip", second.clip);
 }
 
 /// A further motion of what was found, as a recipe: the same is made again.

@@ -39,7 +39,8 @@ GenerationOptions of_rig(const DiscoveredRig& rig, GenerationOptions how) {
 }
 
 void make_one(MotionsJob& work, const RiggedMotion& known, const GenerationOptions& how) {
-  GeneratedMotions all = generate_motions(known, of_rig(*work.rig, how), work.load, [](int) { return true; });
+  GeneratedMotions all = generate_motions(
+      known, of_rig(*work.rig, how), work.load, [](int) { return true; }, work.rig->first_frame);
   work.remark = all.remark;
   work.made.push_back({how, std::make_shared<const GeneratedMotion>(std::move(all.motions.at(0)))});
 }
@@ -61,6 +62,28 @@ std::string made_words(const MotionsJob& work) {
   const std::string motions = count == 1 ? "1 motion" : std::to_string(count) + " motions";
   if (work.cancelled) return "Cancelled: " + motions + " of " + std::to_string(work.wanted.size()) + " made";
   return motions + " made: a click on one, in the list or in the view, keeps it as a clip";
+}
+
+/// Whether they are one rig and one motion but for the bones' names: what was made of one is of the other.
+bool moves_alike(const DiscoveredRig& a, const DiscoveredRig& b) {
+  const RiggedMotion &one = a.found, &other = b.found;
+  const auto same_joint = [](const RigJoint& x, const RigJoint& y) {
+    return x.parent == y.parent && x.kind == y.kind && x.rest == y.rest && x.axis == y.axis;
+  };
+  const auto same_pose = [](const RigPose& x, const RigPose& y) {
+    return x.root == y.root && x.turns == y.turns && x.slides == y.slides;
+  };
+  const auto same_points = [](const auto& x, const auto& y) {
+    return x.rows() == y.rows() && x.cols() == y.cols() && x == y;
+  };
+  return a.first_frame == b.first_frame && one.motion.fps == other.motion.fps &&
+         std::equal(one.rig.joints.begin(), one.rig.joints.end(), other.rig.joints.begin(),
+                    other.rig.joints.end(), same_joint) &&
+         std::equal(one.motion.poses.begin(), one.motion.poses.end(), other.motion.poses.begin(),
+                    other.motion.poses.end(), same_pose) &&
+         same_points(one.rig.surface.vertices, other.rig.surface.vertices) &&
+         same_points(one.rig.skin.bones, other.rig.skin.bones) &&
+         same_points(one.rig.skin.weights, other.rig.skin.weights);
 }
 
 /// It goes on where the playhead has gone round, and begins anew at its own end.
@@ -85,6 +108,23 @@ int clip_of(const Document& document, const GenerationOptions& how) {
   return found == clips.end() ? -1 : static_cast<int>(found - clips.begin());
 }
 
+std::shared_ptr<const GeneratedMotion> performed_clip(const Session& session) {
+  const auto& clips = session.document.bones.clips;
+  for (size_t i = 0; i < clips.size() && i < session.made_motions.clips.size(); ++i)
+    if (clips[i].name == session.document.bones.second.clip) return session.made_motions.clips[i];
+  return nullptr;
+}
+
+int second_pose(const Session& session, int frame) {
+  const auto& rig = session.bones.rig;
+  const auto& performed = session.second.performed;
+  const int at = rig && performed ? frame_of_rig(*rig, frame) : -1;
+  if (at < 0) return -1;
+  const auto count = static_cast<int>(ssize(performed->motion.poses));
+  if (session.document.bones.second.clip.empty()) return at < count ? at : -1;
+  return static_cast<int>(pose_at(session, at, static_cast<size_t>(count)));
+}
+
 std::vector<ShownMotion> shown_motions(const Session& session, int frame) {
   std::vector<ShownMotion> shown;
   const auto& rig = session.bones.rig;
@@ -107,11 +147,16 @@ std::vector<ShownMotion> shown_motions(const Session& session, int frame) {
 }
 
 /// Makes what the document keeps follow it and the rig; begins the work that is missing. What was offered is
-/// of one rig and goes with it.
+/// of one rig and goes with it, but for one whose bones have other names alone.
 void Studio::follow_made_motions() {
   Background& b = *background_;
   MadeMotionsState& state = session_.made_motions;
   const auto& rig = session_.bones.rig;
+  if (b.motions_of && rig && b.motions_of != rig && moves_alike(*b.motions_of, *rig)) {
+    for (auto& [of, one] : b.motions)
+      if (of == b.motions_of) of = rig;
+    b.motions_of = rig;
+  }
   if (b.motions_of != rig) {
     b.motions_of = rig;
     if (state.job != 0) jobs_.cancel(state.job);
@@ -164,9 +209,12 @@ void Studio::start_clips(std::vector<GenerationOptions> missing) {
       [this, work] { take_in_clips(*work); });
 }
 
+/// One that is still wanted is of the rig that is shown, whose bones may have been renamed meanwhile.
 void Studio::keep_made(const MotionsJob& work) {
-  auto& motions = background_->motions;
-  for (const MadeMotion& one : work.made) motions.emplace_back(work.rig, one);
+  Background& b = *background_;
+  auto& motions = b.motions;
+  const bool wanted = b.motions_work.get() == &work || b.clips_work.get() == &work;
+  for (const MadeMotion& one : work.made) motions.emplace_back(wanted ? b.motions_of : work.rig, one);
   if (motions.size() > kMotionsKept)
     motions.erase(motions.begin(), motions.end() - static_cast<ptrdiff_t>(kMotionsKept));
 }

@@ -20,6 +20,11 @@ struct ShownMotion {
 /// that is none of the found rig's, or View::made_motions is off.
 std::vector<ShownMotion> shown_motions(const Session& session, int frame);
 
+/// The kept clip that the second body performs; null: it performs what was found, or the clip is not made.
+std::shared_ptr<const GeneratedMotion> performed_clip(const Session& session);
+/// Which of its poses the second body has in a frame of the source; of a clip as ShownMotion::pose. -1: none.
+int second_pose(const Session& session, int frame);
+
 /// The clip that was kept of such a motion; -1: none was.
 int clip_of(const Document& document, const GenerationOptions& how);
 

@@ -66,7 +66,27 @@ void keep_motion(Call& c) {
   c.label = "Keep " + name;
 }
 
-/// By name or number.
+void rename_clip(Call& c) {
+  MadeClip& clip = kept_clip(c);
+  const std::string& name = c.word(1, "name");
+  if (name == clip.name) return;
+  check_clip_name(c.document, name);
+  c.label = "Rename " + clip.name;
+  std::string& performed = c.document.bones.second.clip;
+  if (performed == clip.name) performed = name;
+  clip.name = name;
+}
+
+void remove_clip(Call& c) {
+  const MadeClip& clip = kept_clip(c);
+  c.label = "Remove " + clip.name;
+  if (std::string& performed = c.document.bones.second.clip; performed == clip.name) performed.clear();
+  std::vector<MadeClip>& clips = c.document.bones.clips;
+  clips.erase(clips.begin() + (&clip - clips.data()));
+}
+
+}  // namespace
+
 MadeClip& kept_clip(Call& c) {
   std::vector<MadeClip>& clips = c.document.bones.clips;
   const std::string& word = c.word(0, "clip");
@@ -77,24 +97,6 @@ MadeClip& kept_clip(Call& c) {
            "'");
   return clips[static_cast<size_t>(number)];
 }
-
-void rename_clip(Call& c) {
-  MadeClip& clip = kept_clip(c);
-  const std::string& name = c.word(1, "name");
-  if (name == clip.name) return;
-  check_clip_name(c.document, name);
-  c.label = "Rename " + clip.name;
-  clip.name = name;
-}
-
-void remove_clip(Call& c) {
-  const MadeClip& clip = kept_clip(c);
-  c.label = "Remove " + clip.name;
-  std::vector<MadeClip>& clips = c.document.bones.clips;
-  clips.erase(clips.begin() + (&clip - clips.data()));
-}
-
-}  // namespace
 
 void add_made_motions_commands(Commands& commands) {
   commands.add({"generate.make", "Make more of its motion",

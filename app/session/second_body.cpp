@@ -5,6 +5,7 @@
 #include "app/run/rig_performance.hpp"
 #include "app/session/background.hpp"
 #include "app/session/follow.hpp"
+#include "app/session/made_motions.hpp"
 #include "retarget/base/error.hpp"
 #include "retarget/base/text.hpp"
 
@@ -14,6 +15,7 @@ namespace understudy::app {
 struct SecondBodyJob {
   std::shared_ptr<const DiscoveredRig> first;
   SecondBody wanted;
+  std::shared_ptr<const GeneratedMotion> clip;  // null: what was found
   SourceOptions like;
   int most = 0;
   std::shared_ptr<const OtherBody> known_body;   // null: it is still to be read
@@ -84,8 +86,10 @@ void perform(SecondBodyJob& work, JobControl& control) {
   if (!work.other) work.other = std::make_shared<const LaidOther>(laid_other(first, *body));
   begin_stage(work, control, "Performing", 0.9f);
   work.matches = matches_of(*work.other, first.rig, work.wanted.matches);
+  RigRetargetOptions how;
+  if (work.clip) how.motion = &work.clip->motion;
   work.performed = std::make_shared<const RiggedMotion>(
-      performed_by(first, work.other->body, work.other->laid, work.matches));
+      performed_by(first, work.other->body, work.other->laid, work.matches, how));
   work.place = place_beside(first, *work.performed);
 }
 
@@ -112,8 +116,10 @@ SourceOptions read_like(const Session& session) {
 std::string performing_words(const SecondBodyJob& work) {
   const auto count = std::count_if(work.matches.partner.begin(), work.matches.partner.end(),
                                    [](int partner) { return partner >= 0; });
-  return file_name(work.wanted.path) + " performs: " + std::to_string(count) + " of " +
-         std::to_string(work.matches.partner.size()) + " bones have a partner";
+  const std::string& clip = work.wanted.clip;
+  return file_name(work.wanted.path) + " performs" + (clip.empty() ? "" : " " + clip) + ": " +
+         std::to_string(count) + " of " + std::to_string(work.matches.partner.size()) +
+         " bones have a partner";
 }
 
 }  // namespace
@@ -128,14 +134,17 @@ void Studio::follow_second_body() {
     state = {};
     return;
   }
-  const bool is_last = last && last->first == session_.bones.rig && last->most == bones.most &&
-                       same(last->wanted, bones.second) && same(last->like, read_like(session_));
+  const auto clip = performed_clip(session_);
+  if (!bones.second.clip.empty() && !clip) return wait_for_clip();
+  const bool is_last = last && last->clip == clip && last->first == session_.bones.rig &&
+                       last->most == bones.most && same(last->wanted, bones.second) &&
+                       same(last->like, read_like(session_));
   if (!is_last) {
     if (!session_.working) start_second_body();  // how the source is read is known
     return;
   }
   if (last->ended) {
-    if (!state.other && state.problem.empty()) take_in_second_body(*last);  // it is wanted again
+    if (!state.other && state.problem != last->problem) take_in_second_body(*last);  // it is wanted again
     return;
   }
   const std::lock_guard lock(last->mutex);
@@ -144,12 +153,25 @@ void Studio::follow_second_body() {
     if (job.id == state.job) state.share = std::max(0.0f, job.progress);
 }
 
+/// The clip is being made, or cannot be.
+void Studio::wait_for_clip() {
+  SecondBodyState& state = session_.second;
+  auto& last = background_->second_work;
+  if (state.job != 0) jobs_.cancel(state.job);
+  if (last && !last->ended) last.reset();
+  const std::string& why = session_.made_motions.problem;
+  state = {};
+  state.problem = "the clip \"" + session_.document.bones.second.clip + "\" is not made" +
+                  (why.empty() ? " yet" : ": " + why);
+}
+
 void Studio::start_second_body() {
   SecondBodyState& state = session_.second;
   auto& last = background_->second_work;
   const auto work = std::make_shared<SecondBodyJob>();
   work->first = session_.bones.rig;
   work->wanted = session_.document.bones.second;
+  work->clip = performed_clip(session_);
   work->like = read_like(session_);
   work->most = session_.document.bones.most;
   if (state.job != 0) jobs_.cancel(state.job);

@@ -30,7 +30,7 @@ void choose_second(Call& c) {
   check_body(path);
   remember_folder(c.studio, path);
   if (c.document.bones.second.path == path) return c.studio.perform_again();
-  c.document.bones.second = {path, {}};
+  c.document.bones.second = {path, {}, c.document.bones.second.clip};
 }
 
 /// As the second body's bones are known: it has bones of its own, and is laid on the first one.
@@ -65,6 +65,20 @@ void match_bone(Call& c) {
   c.label = "Match " + chosen.bone;
 }
 
+void perform_clip(Call& c) {
+  SecondBody& second = c.document.bones.second;
+  US_CHECK(!second.path.empty(), "no second body performs");
+  second.clip = c.word(0, "clip") == kFoundClip ? std::string() : kept_clip(c).name;
+  c.label = "Perform " + (second.clip.empty() ? "what was found" : second.clip);
+}
+
+void export_second(Call& c) {
+  const auto& performed = c.session.second.performed;
+  const std::string& clip = c.document.bones.second.clip;
+  US_CHECK(performed, "no second body performs");
+  export_rig(c, performed, {{clip.empty() ? kFoundClip : clip, performed->motion}});
+}
+
 void drop_second(Call& c) {
   US_CHECK(!c.document.bones.second.path.empty(), "no second body performs");
   c.document.bones.second = {};
@@ -79,13 +93,13 @@ void add_second_body_commands(Commands& commands) {
   commands.add_edit({"bones.match", "Match bones",
                      "BONE OTHER|none|auto: the second body's that performs it; by name or number"},
                     match_bone);
+  commands.add_edit({"bones.perform_clip", "What the second body performs",
+                     "CLIP|motion: one that was kept, by name or number; motion, what was found"},
+                    perform_clip);
   commands.add_edit({"bones.perform_drop", "Drop the second body"}, drop_second);
   commands.add({"bones.perform_export", "Export the second body's performance",
                 "PATH: .glb or .gltf; its motion alone as .bvh"},
-               [](Call& c) {
-                 US_CHECK(c.session.second.performed, "no second body performs");
-                 export_rig(c, c.session.second.performed);
-               });
+               export_second);
 }
 
 }  // namespace understudy::app

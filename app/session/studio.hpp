@@ -138,6 +138,7 @@ class Studio {
   void compare_bones();
   void forget_incomplete_bones();
   void follow_second_body();
+  void wait_for_clip();
   void start_second_body();
   void take_in_second_body(SecondBodyJob& work);
   void follow_made_motions();

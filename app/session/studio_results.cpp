@@ -535,8 +535,8 @@ void Studio::take_in_results() {
     b.people_before.clear(), session_.source.people = b.people_now;
   offer_fills();
   follow_bones();
-  follow_second_body();
   follow_made_motions();
+  follow_second_body();  // whom they may be performed by
   follow_flat();
   measure_finished();
 }

@@ -116,12 +116,14 @@ Extent scan_extent(const Session& session, int pane, int frame, const Joints& jo
 void add_bodies_beside(Extent& all, const Session& session, int frame, const Vec3& offset) {
   const int at = session.bones.rig ? frame_of_rig(*session.bones.rig, frame) : -1;
   if (at < 0) return;
-  const auto add = [&](const RiggedMotion& body, const Vec3& place) {
-    const BoneMotions bones = bone_motions(body.rig, body.motion.poses[static_cast<size_t>(at)]);
+  const auto add = [&](const RiggedMotion& body, int pose, const Vec3& place) {
+    const BoneMotions bones = bone_motions(body.rig, body.motion.poses[static_cast<size_t>(pose)]);
     add_points(all, skinned(body.rig.surface.vertices, body.rig.skin, bones), offset - place);
   };
-  if (session.view.bone_surface == BoneSurface::Beside) add(session.bones.rig->found, painted_place(session));
-  if (session.second.performed) add(*session.second.performed, second_place(session));
+  if (session.view.bone_surface == BoneSurface::Beside)
+    add(session.bones.rig->found, at, painted_place(session));
+  const int performed = second_pose(session, frame);
+  if (performed >= 0) add(*session.second.performed, performed, second_place(session));
   const understudy::Rig& rig = session.bones.rig->found.rig;
   for (const ShownMotion& one : shown_motions(session, frame)) {
     const Points posed = skinned(rig.surface.vertices, rig.skin, bone_motions(rig, *one.pose));

@@ -6,6 +6,7 @@
 
 #include "retarget/base/error.hpp"
 #include "retarget/base/index.hpp"
+#include "retarget/base/text.hpp"
 #include "retarget/math/cheapest_pairs.hpp"
 #include "retarget/math/rotation.hpp"
 
@@ -138,6 +139,36 @@ ProportionFit fitted(const Look& look, const Rig& source, const SkinWeights& ski
   return fit_proportions(body, rough ? look.target->rough : look.target->surface, options);
 }
 
+/// Not one that a program gave by counting, which is another bone's in another rig. Keypoints are numbered as
+/// their network has them, the same in all bodies of a kind.
+bool tells_a_bone(const Rig& rig, int j) {
+  const std::string& name = rig.joints[static_cast<size_t>(j)].name;
+  const std::string word = lower_case(name.substr(0, name.find_first_of(" ._-0123456789")));
+  const bool counted = word.empty() || word == "bone" || word == "joint" || word == "node";
+  const bool numbers = name.find_first_not_of(" ._-0123456789", word.size()) == std::string::npos;
+  const auto same = [&](const RigJoint& joint) { return joint.name == name; };
+  return !(counted && numbers) && std::count_if(rig.joints.begin(), rig.joints.end(), same) == 1;
+}
+
+/// [J of the target] the source's bone of the same name, -1: none; all -1 where the trees contradict most.
+std::vector<int> same_names(const Rig& source, const Rig& target) {
+  std::vector<int> named(target.joints.size(), -1), believed(target.joints.size(), -1);
+  for (int k = 0; k < target.count(); ++k) {
+    const int j = bone_named(source, target.joints[static_cast<size_t>(k)].name);
+    if (j >= 0 && tells_a_bone(target, k) && tells_a_bone(source, j)) named[static_cast<size_t>(k)] = j;
+  }
+  ptrdiff_t known = 0, agreeing = 0;
+  for (size_t k = 0; k < named.size(); ++k) {
+    if (named[k] < 0) continue;
+    const int above = target.joints[k].parent, other = source.joints[static_cast<size_t>(named[k])].parent;
+    const bool agrees = above < 0 || other < 0 ? above == other : named[static_cast<size_t>(above)] == other;
+    if (agrees) believed[k] = named[k];
+    ++known, agreeing += agrees;
+  }
+  if (2 * agreeing <= known) std::fill(believed.begin(), believed.end(), -1);
+  return believed;
+}
+
 }  // namespace
 
 int performer_of(const BoneMatches& matches, int bone) {
@@ -207,12 +238,18 @@ Eigen::MatrixXd bone_costs(const LaidBody& laid, const RiggedMotion& source, con
   return cost;
 }
 
-BoneMatches match_bones(const Eigen::MatrixXd& costs) {
+BoneMatches match_bones(const Eigen::MatrixXd& costs, const Rig& source, const Rig& target) {
+  const std::vector<int> named = same_names(source, target);
+  Eigen::MatrixXd wanted = costs;
+  for (size_t k = 0; k < named.size(); ++k)  // cheaper than all others together
+    if (named[k] >= 0)
+      wanted(static_cast<Eigen::Index>(k), named[k]) = -2 * static_cast<double>(costs.size());
   BoneMatches matches;
-  matches.partner = cheapest_pairs(costs);
+  matches.partner = cheapest_pairs(wanted);
   for (Eigen::Index k = 0; k < costs.rows(); ++k) {
-    int& partner = matches.partner[static_cast<size_t>(k)];
-    if (partner >= 0 && costs(k, partner) > 1 - kFewInCommon) partner = -1;
+    const auto at = static_cast<size_t>(k);
+    int& partner = matches.partner[at];
+    if (named[at] < 0 && partner >= 0 && costs(k, partner) > 1 - kFewInCommon) partner = -1;
     matches.cost.push_back(partner < 0 ? 0 : static_cast<float>(costs(k, partner)));
   }
   return matches;

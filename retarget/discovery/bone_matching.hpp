@@ -47,8 +47,10 @@ LaidBody lay_on(const RiggedMotion& source, const RiggedMotion& target);
 /// [J of the target, J of the source] share of both bones' surfaces that the other one is not, where the
 /// source is laid on the target: 0 all the same .. 1 nothing in common.
 Eigen::MatrixXd bone_costs(const LaidBody& laid, const RiggedMotion& source, const RiggedMotion& target);
-/// The cheapest pairs of all, one to one; bones with too little in common are no partners.
-BoneMatches match_bones(const Eigen::MatrixXd& costs);
+/// One to one: bones of the same name that hang on bones of the same name, where most of the names that both
+/// rigs have agree so; of the others the cheapest pairs, but for bones with too little in common. Names that
+/// programs number ("bone 2") tell nothing. costs: bone_costs() of these rigs.
+BoneMatches match_bones(const Eigen::MatrixXd& costs, const Rig& source, const Rig& target);
 
 /// [J] each bone's nearest one with a partner along the target's tree, itself first, then towards the root.
 std::vector<int> led_by(const Rig& target, const BoneMatches& matches);

@@ -45,8 +45,9 @@ void in_halves(size_t count, const Function& f) {
   first.join();
 }
 
-void check_count(const ScanSequence& scans, int usable, const std::string& wrong = {}) {
-  US_CHECK(usable >= 2, scans.name,
+void check_count(const ScanSequence& scans, int usable, bool keypoints, const std::string& wrong = {}) {
+  US_CHECK(usable >= 1 || !keypoints, scans.name, ": no frame can be used", wrong);
+  US_CHECK(usable >= 2 || keypoints, scans.name,
            ": a skeleton is found in how a thing moves: that takes two frames or more, not ", usable, wrong);
 }
 
@@ -81,6 +82,8 @@ class Discovery {
   void read_key_frames();
   int most_open() const;
   void track();
+  void start_from_network();
+  DiscoveredRig at_rest();
   void find_bones();
   void show_parts() const;
   void bind_points();
@@ -133,7 +136,7 @@ void Discovery::read_key_frames() {
     const float share = static_cast<float>(t) / static_cast<float>(wanted.back() + 1);
     US_CHECK(report("Reading", kReadingEnds * share), scans_.name, ": ended before a skeleton was found");
   }
-  check_count(scans_, ssize(frames_), wrong);
+  check_count(scans_, static_cast<int>(ssize(frames_)), options_.keypoints != nullptr, wrong);
 }
 
 int Discovery::most_open() const {
@@ -162,10 +165,28 @@ void Discovery::track() {
     tracks_ = track_surface(frames_, most_open(), kNodes, progress);
     return;
   }
+  start_from_network();
+  if (frames_.size() > 1) track_again(frames_, tracks_, progress);
+}
+
+/// Shown as the network sees it: all that follows takes longer.
+void Discovery::start_from_network() {
   KeypointStart start = start_from_keypoints(frames_, most_open(), kNodes, *options_.keypoints);
   tracks_ = std::move(start.tracks);
   parts_ = std::move(start.parts);
-  track_again(frames_, tracks_, progress);
+  tree_ = part_tree_of_kind(tracks_, parts_, options_.keypoints->parents());
+  for (int j = 0; j < tree_.rig.count(); ++j) {
+    const auto at = static_cast<size_t>(j);
+    tree_.rig.joints[at].rest = start.places.row(tree_.part_of_bone[at]).transpose();
+  }
+  show_parts();
+}
+
+/// Of one frame: nothing has moved that could tell where joints are, so they stay where the network sees them.
+DiscoveredRig Discovery::at_rest() {
+  bind_points();
+  bones_.assign(1, BoneMotions(tree_.part_of_bone.size()));
+  return finished();
 }
 
 void Discovery::find_bones() {
@@ -323,6 +344,7 @@ DiscoveredRig Discovery::run() {
   read_key_frames();
   warn_of_more_than_one(frames_, scans_.name);
   track();
+  if (frames_.size() == 1) return at_rest();
   for (int round = 0; round < kRounds; ++round) {
     rest_what_may(frames_, tracks_);
     find_bones();
@@ -344,7 +366,7 @@ DiscoveredRig Discovery::run() {
 }  // namespace
 
 DiscoveredRig discover(const ScanSequence& scans, const DiscoveryOptions& options) {
-  check_count(scans, scans.count);
+  check_count(scans, scans.count, options.keypoints != nullptr);
   return Discovery(scans, options).run();
 }
 

@@ -36,9 +36,9 @@ struct PartsSoFar {
 struct DiscoveryOptions {
   int parts = 0;  ///< at most; 0: as many as the motion shows
   /// Null: bones are found in the motion alone (`parts`). Else the bones are this network's keypoints, as
-  /// many and as joined in every sequence of its kind, and `parts` does not count.
+  /// many and as joined in every sequence of its kind, and `parts` does not count; one frame is enough.
   std::shared_ptr<KeypointFinder> keypoints = nullptr;
-  /// Called each time bones have been looked for, on one thread.
+  /// Called each time bones have been looked for, on one thread; with keypoints at once, as they were seen.
   std::function<void(PartsSoFar)> parts_found = {};
   /// Called from several threads, one at a time; false ends the work with the best found so far.
   std::function<bool(const DiscoveryProgress&)> progress = {};
@@ -63,14 +63,16 @@ struct DiscoveredRig {
   std::vector<bool>
       doubted;           ///< [T] frames that it fits clearly worse than the others, or that could not be used
   bool complete = true;  ///< false: ended early
-  int first_frame = 0;   ///< of the scans: the first pose's, where edits have trimmed it
+  /// No motion has shown its joints: they are where a network's keypoints are in one frame.
+  bool seen_once() const { return key_frames.size() == 1; }
+  int first_frame = 0;  ///< of the scans: the first pose's, where edits have trimmed it
 };
 
 /// Tracks the surface of the most open frame through up to 60 key frames, joins what moves alike to rigid
 /// parts, finds their joints and tree, and fits the rig to the scans; other frames are followed. After Chang
 /// and Zwicker 2011 and Le and Deng 2014, without correspondence. Looks at all frames, unlike RigFollower.
-/// The same scans give the same bytes. Throws Error naming the scans where fewer than two frames can be
-/// used, and where it is ended before a skeleton was found. Warns of scans that seem to show more than one
+/// Of one frame with keypoints the rig at rest. The same scans give the same bytes. Throws Error naming the
+/// scans where too few frames can be used (two, with keypoints one), and where it is ended before a skeleton was found. Warns of scans that seem to show more than one
 /// thing.
 DiscoveredRig discover(const ScanSequence& scans, const DiscoveryOptions& options = {});
 

@@ -71,6 +71,7 @@ KeypointStart start_from_keypoints(const std::vector<ThinnedFrame>& frames, int 
   const ThinnedFrame& frame = frames[static_cast<size_t>(rest_frame)];
   KeypointStart start;
   start.tracks = {deformation_graph(frame, nodes), rest_frame, {}};
+  start.places = rest.places;
   const DeformationGraph& graph = start.tracks.graph;
   const float size = box_diagonal(graph.points);
   FoundKeypoints shown = rest;  // the graph has the frame's first points

@@ -9,7 +9,8 @@ namespace understudy {
 
 struct KeypointStart {
   SurfaceTracks tracks;
-  RigidParts parts;  ///< one a keypoint, in their order
+  RigidParts parts;     ///< one a keypoint, in their order
+  Points places{0, 3};  ///< [K, 3] of the keypoints in the rest frame
 };
 /// Each point of the rest frame goes with the keypoint that owns it; keypoints that own nothing there get the
 /// nearest point. name: of the scans, for messages. Throws Error as finder.find() does.

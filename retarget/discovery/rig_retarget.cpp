@@ -107,9 +107,10 @@ RiggedMotion performed_by(const RiggedMotion& source, const RiggedMotion& target
   const Performance performance(source, target, laid, matches);
   RiggedMotion performed;
   performed.rig = target.rig;
-  performed.motion.fps = source.motion.fps;
-  for (const RigPose& pose : source.motion.poses) performed.motion.poses.push_back(performance.pose(pose));
-  if (options.contacts) stand(source, target, matches, performed);
+  const RigMotion& motion = options.motion ? *options.motion : source.motion;
+  performed.motion.fps = motion.fps;
+  for (const RigPose& pose : motion.poses) performed.motion.poses.push_back(performance.pose(pose));
+  if (options.contacts) stand({source.rig, motion}, target, matches, performed);
   loosen_joints(performed);
   return performed;
 }

@@ -6,10 +6,11 @@
 namespace understudy {
 
 struct RigRetargetOptions {
-  bool contacts = true;  ///< what stands on the source's ground stands on the target's
+  bool contacts = true;               ///< what stands on the source's ground stands on the target's
+  const RigMotion* motion = nullptr;  ///< of the source's rig, performed in place of its own; null: its own
 };
 
-/// The target's rig in a pose for each of the source's frames: partners turn alike from where they lie alike,
+/// The target's rig in a pose for each frame of the source's motion: partners turn alike from where they lie alike,
 /// bones without one go with their neighbours; the path is the source's, scaled; sliders go as far for their
 /// size. Where a bone of the source touches the lowest ground and stays, its partner stays on the target's
 /// ground: the path gives first, then the last two bones. Throws Error where matches do not fit.

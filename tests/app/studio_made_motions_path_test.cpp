@@ -50,6 +50,24 @@ TEST_F(MadeMotionsPath, SeedsAreKeptByClicksInTheListAndExported) {
   play("click generate.remove\nframes 3\nexpect_value clips 1\nexpect_value undo_label \"Remove nod\"");
 }
 
+TEST_F(MadeMotionsPath, ASecondBodyPerformsAClipAndIsExported) {
+  make_three();
+  play("click generate.offered.1\nframes 3\nclick bones.export\nframes 3\n" +
+       typed("browser.name", path("second.glb")) + "wait\nframes 3");
+  play("click bones.perform\nframes 3\n" + typed("browser.name", path("second.glb")) + "wait\nframes 3");
+  ASSERT_TRUE(session().second.performed) << session().second.problem;
+  EXPECT_EQ(session().second.performed->motion.poses.size(), static_cast<size_t>(understudy::kFrames));
+  play("click bones.perform_clip.1\nwait\nframes 3\nexpect_value undo_label \"Perform motion 2\"");
+  ASSERT_TRUE(session().second.performed) << session().second.problem;
+  EXPECT_EQ(session().second.performed->motion.poses.size(), 20u);
+  play("click bones.perform_export\nframes 3\n" + typed("browser.name", path("nod.glb")) + "wait");
+  const Character written = read_character(path("nod.glb"));
+  ASSERT_EQ(written.animations.size(), 1u);
+  EXPECT_EQ(written.animations[0].name, "motion 2");
+  play("key Ctrl+Z\nwait\nframes 3");
+  EXPECT_EQ(session().second.performed->motion.poses.size(), static_cast<size_t>(understudy::kFrames));
+}
+
 TEST_F(MadeMotionsPath, BetweenTheMarksOfTheTimelineAndCancelled) {
   make_three();
   play("playback.frame 2\nkey I\nplayback.frame 7\nkey O\nframes 2\nclick generate.between\nframes 2");

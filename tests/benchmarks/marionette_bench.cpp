@@ -1,4 +1,5 @@
-// Prints what paper 3's own keypoints cost a frame, at the paper's size and at the trained one; one thread.
+// Prints what keypoints cost a frame, with one thread: by slots, and by paper 3's own network at the paper's size
+// and at the trained one. Their numbers are drawn at random, which costs the same.
 #include <torch/torch.h>
 
 #include <chrono>
@@ -9,13 +10,15 @@
 
 #include "retarget/base/rng.hpp"
 #include "retarget/nn/load.hpp"
+#include "retarget/nn/modules/slot_net.hpp"
 #include "retarget/nn/modules/voxel_keypoints.hpp"
 #include "retarget/nn/weights_file.hpp"
 
 namespace understudy {
 namespace {
 
-constexpr int kFurther = 4;
+constexpr int kFurther = 4, kKeypoints = 28;
+constexpr int kBodyPoints = 6890, kScanPoints = 50000;  // an SMPL body's vertices, a raw scan's
 
 /// Milliseconds on the clock, and of this process's work: a busy machine has more of the former.
 struct Spent {
@@ -26,23 +29,43 @@ Spent spent_now() {
           1e3 * static_cast<double>(std::clock()) / CLOCKS_PER_SEC};
 }
 
-Mesh some_cloud() {
+Mesh some_cloud(int points) {
   Mesh cloud;
-  cloud.vertices = Points(20000, 3);
+  cloud.vertices = Points(points, 3);
   Rng rng(1);
   for (float& number : cloud.vertices.reshaped()) number = rng.uniform(-1, 1);
   return cloud;
 }
 
-Spent find_in(KeypointFinder& finder, int frames) {
-  const std::vector<Mesh> scans(static_cast<size_t>(frames), some_cloud());
+Spent find_in(KeypointFinder& finder, int frames, int points) {
+  const std::vector<Mesh> scans(static_cast<size_t>(frames), some_cloud(points));
   const Spent began = spent_now();
   finder.find(scans);
   const Spent ended = spent_now();
   return {ended.clock - began.clock, ended.work - began.work};
 }
 
-void measure(int64_t grid, int64_t width, const std::string& folder) {
+void print_costs(const std::string& name, KeypointFinder& finder) {
+  find_in(finder, 1, kBodyPoints);  // what is done once
+  for (const int points : {kBodyPoints, kScanPoints}) {
+    const Spent one = find_in(finder, 1, points), more = find_in(finder, 1 + kFurther, points);
+    std::printf(
+        "%s, %d points: first frame %.0f ms (%.0f of work), each further one %.0f ms (%.0f); %d thread%s\n",
+        name.c_str(), points, one.clock, one.work, (more.clock - one.clock) / kFurther,
+        (more.work - one.work) / kFurther, torch::get_num_threads(),
+        torch::get_num_threads() == 1 ? "" : "s");
+  }
+}
+
+void measure_slots(const std::string& folder) {
+  nn::SlotNet net(kKeypoints);
+  const std::string file = folder + "/slots.weights";
+  nn::save_weights(
+      file, {"marionette-slots", nn::kSlotVersion, {{"slots", kKeypoints}}, {{"kind", "person"}}}, *net);
+  print_costs("slots", *nn::load_slots(file));
+}
+
+void measure_paper(int64_t grid, int64_t width, const std::string& folder) {
   nn::VoxelKeypointsForm form;
   form.grid = grid;
   form.width = width;
@@ -55,13 +78,8 @@ void measure(int64_t grid, int64_t width, const std::string& folder) {
        {{"keypoints", 24}, {"grid", static_cast<double>(grid)}, {"width", static_cast<double>(width)}},
        {{"kind", "person"}}},
       *net);
-  const auto finder = nn::load_paper_keypoints(file);
-  find_in(*finder, 1);  // what is done once
-  const Spent one = find_in(*finder, 1), more = find_in(*finder, 1 + kFurther);
-  std::printf(
-      "%lld cells, %lld channels: first frame %.0f ms (%.0f of work), each further one %.0f ms (%.0f)\n",
-      static_cast<long long>(grid), static_cast<long long>(width), one.clock, one.work,
-      (more.clock - one.clock) / kFurther, (more.work - one.work) / kFurther);
+  print_costs("paper, " + std::to_string(grid) + " cells, " + std::to_string(width) + " channels",
+              *nn::load_paper_keypoints(file));
 }
 
 }  // namespace
@@ -72,8 +90,9 @@ int main() {
   char name[] = "/tmp/understudy_bench_XXXXXX";
   const char* folder = mkdtemp(name);
   if (!folder) return 1;
-  understudy::measure(32, 32, folder);
-  understudy::measure(64, 128, folder);
+  understudy::measure_slots(folder);
+  understudy::measure_paper(32, 32, folder);
+  understudy::measure_paper(64, 128, folder);
   std::filesystem::remove_all(folder);
   return 0;
 }

@@ -61,6 +61,20 @@ TEST_F(Sheet, PosesAndPicturesOfThemHaveRowsOfTheirOwn) {
   expect_clean_failure(sheet({kSamples + "poses", walk(), "--out", out("mixed.png")}), "poses");
 }
 
+TEST_F(Sheet, RigsAreShownWithTheirBones) {
+  ASSERT_EQ(run_program({"retarget", "--source", scans(), "--target", target(), "--out", out("a.glb")}).code,
+            0);
+  for (const std::string file : {"with.png", "without.png"}) {
+    std::vector<std::string> words = {out("a.glb"), target(), "--seconds", "0", "--out", out(file)};
+    if (file == "with.png") words.emplace_back("--bones");
+    const Finished done = sheet(words);
+    ASSERT_EQ(done.code, 0) << done.err;
+    EXPECT_NE(done.out.find("2 rows, 1 moments"), std::string::npos) << done.out;
+  }
+  EXPECT_NE(read_bytes(out("with.png")), read_bytes(out("without.png")));
+  expect_clean_failure(sheet({walk(), "--bones", "--out", out("no.png")}), "walk.npz");
+}
+
 TEST_F(Sheet, RefusesWhatItCannotShow) {
   const std::string file = scratch.path("x.png");
   expect_clean_failure(sheet({walk(), "--captions", "a,b", "--out", file}),
@@ -69,6 +83,7 @@ TEST_F(Sheet, RefusesWhatItCannotShow) {
   expect_clean_failure(sheet({walk(), "--every", "0.001", "--out", file}), "more than 240 moments");
   expect_clean_failure(sheet({walk(), "--motion", "walk", "--out", file}), "--motion is of a study");
   expect_clean_failure(sheet({"a.study", walk(), "--out", file}), "a study is shown by itself");
+  expect_clean_failure(sheet({"a.study", "--bones", "--out", file}), "--bones is of rigs");
   expect_clean_failure(sheet({scratch.path("none.glb"), "--out", file}), "none.glb");
 }
 

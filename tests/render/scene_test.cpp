@@ -49,6 +49,23 @@ TEST(SkeletonSolids, LeaveOutAJointThatIsNotFinite) {
   EXPECT_TRUE(solids.vertices->allFinite());
 }
 
+TEST(SkeletonSolids, MarkJointsInTheirColours) {
+  SkeletonView view = skeleton_view(make_joints());
+  view.colors = Points::Zero(view.joints.rows(), 3);
+  view.colors.row(LeftElbow) << 1, 0, 1;
+  const MeshView solids = skeleton_solids(view);
+  Points marked(0, 3);
+  for (Eigen::Index i = 0; i < solids.vertices->rows(); ++i)
+    if (solids.colors->row(i) == view.colors.row(LeftElbow)) {
+      marked.conservativeResize(marked.rows() + 1, 3);
+      marked.bottomRows<1>() = solids.vertices->row(i);
+    }
+  ASSERT_GT(marked.rows(), 0);
+  EXPECT_LT((marked.rowwise() - view.joints.row(LeftElbow)).rowwise().norm().maxCoeff(), 0.05f);
+  view.colors.conservativeResize(3, 3);
+  EXPECT_THROW(skeleton_solids(view), Error);
+}
+
 TEST(SkeletonSolids, RefuseAParentThatIsNone) {
   SkeletonView view = skeleton_view(make_joints());
   view.parents[4] = 22;

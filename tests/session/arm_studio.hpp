@@ -15,11 +15,13 @@ class ArmStudioTest : public StudioTest {
     write_arm("arm.npz", understudy::kFrames);
   }
 
-  /// Its first frames, `scale` times as large, of `count` points: few are searched quickly.
-  void write_arm(const std::string& name, int frames, float scale = 1, int count = 1000) {
+  /// Its first frames, `scale` times as large, of `count` points: few are searched quickly. goes: in a frame.
+  void write_arm(const std::string& name, int frames, float scale = 1, int count = 1000,
+                 const Vec3& goes = Vec3::Zero()) {
     NpyArray points;
     for (int t = 0; t < frames; ++t) {
-      const Points frame = scale * sparse(bent_arm(angle_at(t), static_cast<uint64_t>(t)), count).vertices;
+      Points frame = scale * sparse(bent_arm(angle_at(t), static_cast<uint64_t>(t)), count).vertices;
+      frame.rowwise() += static_cast<float>(t) * goes.transpose();
       points.shape = {frames, frame.rows(), 3};
       points.values.insert(points.values.end(), frame.data(), frame.data() + frame.size());
     }

@@ -128,6 +128,7 @@ const Changes& document_changes() {
       CHANGE(bones.edits[0] = FitAgain{}),
       CHANGE(bones.second.path += "x"),
       CHANGE(bones.second.matches.push_back({"arm", "leg"})),
+      CHANGE(bones.second.clip += "x"),
       CHANGE(bones.clips.pop_back()),
       CHANGE(bones.clips[0].name = "other"),
       CHANGE(bones.clips[0].how.frames = 3),
@@ -265,7 +266,7 @@ const Changes& document_changes() {
   [[maybe_unused]] const auto& [made_frames, between, made_loop, seed, count, made_engine, paper_sampling] =
       GenerationOptions();
   [[maybe_unused]] const auto& [between_first, between_last] = FramesBetween();
-  [[maybe_unused]] const auto& [second_path, matches] = SecondBody();
+  [[maybe_unused]] const auto& [second_path, matches, second_clip] = SecondBody();
   [[maybe_unused]] const auto& [path, motion, betas, fps, import, follow, as_scan, clip, source_bones, quiet,
                                 with_truth, person, times, complete, markers, made, people, recipe,
                                 point_order, picture_size, stature, view_fov, view_pitch, calm, point_edits,

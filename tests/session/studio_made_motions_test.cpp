@@ -129,13 +129,10 @@ TEST_F(MadeMotionsTest, ClipsFollowTheBonesAndTellWhereTheyCannot) {
   find(studio);
   make(studio, {"12", "between", "1", "8"});
   studio.run("generate.keep", {"1"});
-  studio.run("bones.rename", {"1", "forearm"});
-  studio.wait_idle();
-  EXPECT_TRUE(made(studio).clips.at(0));
-  EXPECT_TRUE(made(studio).offered.empty()) << "they were of other bones";
   studio.run("bones.trim", {"3", "9"});
   studio.wait_idle();
   EXPECT_FALSE(made(studio).clips.at(0));
+  EXPECT_TRUE(made(studio).offered.empty()) << "they were of another motion";
   EXPECT_NE(made(studio).problem.find("no frame 1"), std::string::npos) << made(studio).problem;
   EXPECT_EQ(studio.session().errors.size(), 1u) << "it is told once";
   EXPECT_NE(refused(studio, "bones.export", {path("rig.glb")}).find("motion 1"), std::string::npos);
@@ -143,6 +140,42 @@ TEST_F(MadeMotionsTest, ClipsFollowTheBonesAndTellWhereTheyCannot) {
   studio.wait_idle();
   EXPECT_TRUE(made(studio).clips.at(0));
   EXPECT_EQ(made(studio).problem, "");
+}
+
+TEST_F(MadeMotionsTest, ARenamedBoneLeavesWhatWasOffered) {
+  Studio studio(services());
+  find(studio);
+  make(studio, {"12", "count", "2"});
+  studio.run("generate.keep", {"1"});
+  studio.tick(0);
+  const auto kept = made(studio).clips.at(0);
+  for (const auto& [command, words] : std::vector<std::pair<std::string, Arguments>>{
+           {"bones.rename", {"1", "forearm"}}, {"edit.undo", {}}, {"edit.redo", {}}}) {
+    studio.run(command, words);
+    studio.tick(0);
+    EXPECT_EQ(made(studio).offered.size(), 2u) << command;
+    EXPECT_EQ(made(studio).clips.at(0), kept) << command << ": it is not made once more";
+  }
+  studio.run("generate.make", {"500", "count", "4"});
+  studio.run("bones.rename", {"1", "wing"});
+  studio.wait_idle();
+  EXPECT_EQ(made(studio).offered.size(), 4u) << "renamed while they were made";
+  studio.run("generate.keep", {"3"});
+  studio.tick(0);
+  EXPECT_EQ(made(studio).clips.at(1), made(studio).offered[2].made);
+  studio.run("bones.kind", {"wing", "fixed"});
+  studio.wait_idle();
+  EXPECT_TRUE(made(studio).offered.empty()) << "they are of other joints";
+}
+
+TEST_F(MadeMotionsTest, AHurryNamesTheFramesOfTheTimeline) {
+  write_arm("arm.npz", understudy::kFrames, 1, 1000, Vec3(0, 0, 0.05f));
+  Studio studio(services());
+  find(studio);
+  studio.run("bones.trim", {"2", "9"});
+  studio.wait_idle();
+  make(studio, {"3", "between", "3", "8", "engine", "slerp"});
+  EXPECT_EQ(made(studio).remark.find("frames 3 and 8 are 0.2"), 0u) << made(studio).remark;
 }
 
 TEST_F(MadeMotionsTest, CancelledLeavesWhatWasOffered) {

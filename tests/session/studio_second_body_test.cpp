@@ -1,7 +1,9 @@
 // A second body that performs what was found in the source's scans: from the file to the exported rig.
 #include "app/run/rig_performance.hpp"
 #include "app/session/follow.hpp"
+#include "app/session/made_motions.hpp"
 #include "retarget/character/gltf_character.hpp"
+#include "retarget/character/read_character.hpp"
 #include "retarget/character/rig_character.hpp"
 #include "tests/session/arm_studio.hpp"
 
@@ -164,6 +166,66 @@ TEST_F(SecondBodyTest, IsExportedAndNeverOverTheFileItCameFrom) {
   EXPECT_EQ(again.motion.poses.size(), static_cast<size_t>(understudy::kFrames));
   EXPECT_NE(refused(studio, "bones.perform_export", {path("second.glb")}), "");
   EXPECT_NE(refused(studio, "bones.perform_export", {path("performed.obj")}), "");
+}
+
+TEST_F(SecondBodyTest, PerformsAClipThatWasKept) {
+  Studio studio(services());
+  perform_itself(studio);
+  const auto found = second(studio).performed;
+  EXPECT_NE(refused(studio, "bones.perform_clip", {"0"}), "") << "none was kept";
+  studio.run("generate.make", {"20"});
+  studio.wait_idle();
+  studio.run("generate.keep", {"1", "nod"});
+  studio.run("bones.perform_clip", {"nod"});
+  studio.wait_idle();
+  const RiggedMotion& first = studio.session().bones.rig->found;
+  ASSERT_TRUE(second(studio).performed) << second(studio).problem;
+  const RiggedMotion performed = *second(studio).performed;
+  ASSERT_EQ(performed.motion.poses.size(), 20u);
+  const RiggedMotion made{first.rig, studio.session().made_motions.clips.at(0)->motion};
+  const float moved = apart(first, understudy::kFrames - 1, first, 0);
+  for (const int t : {0, 19}) EXPECT_LT(apart(performed, t, made, t), 0.4f * moved) << "frame " << t;
+  EXPECT_EQ(undo_label(studio.session()), "Perform nod");
+  studio.session().made_motions.laps = 1;
+  EXPECT_EQ(second_pose(studio.session(), 3), (understudy::kFrames + 3) % 20) << "it goes on";
+  studio.run("generate.rename", {"nod", "bow"});
+  studio.wait_idle();
+  EXPECT_EQ(studio.session().document.bones.second.clip, "bow");
+  studio.run("bones.perform_export", {path("bow.glb")});
+  studio.wait_idle();
+  const Character written = read_character(path("bow.glb"));
+  ASSERT_EQ(written.animations.size(), 1u);
+  EXPECT_EQ(written.animations[0].name, "bow");
+  EXPECT_EQ(from_character(written, 0, first.motion.fps).motion.poses.size(), 20u);
+  studio.run("bones.perform_clip", {"motion"});
+  studio.wait_idle();
+  EXPECT_EQ(second(studio).performed->motion.poses.size(), found->motion.poses.size());
+  studio.run("edit.undo");
+  studio.run("generate.remove", {"bow"});
+  studio.wait_idle();
+  EXPECT_EQ(studio.session().document.bones.second.clip, "");
+  EXPECT_EQ(second(studio).performed->motion.poses.size(), found->motion.poses.size());
+}
+
+TEST_F(SecondBodyTest, WaitsForAClipThatCannotBeMade) {
+  Studio studio(services());
+  perform_itself(studio);
+  studio.run("generate.make", {"12", "between", "1", "8"});
+  studio.wait_idle();
+  studio.run("generate.keep", {"1", "nod"});
+  studio.run("bones.perform_clip", {"nod"});
+  studio.wait_idle();
+  studio.run("bones.trim", {"3", "9"});
+  studio.wait_idle();
+  EXPECT_FALSE(second(studio).performed);
+  EXPECT_NE(second(studio).problem.find("\"nod\" is not made: "), std::string::npos)
+      << second(studio).problem;
+  EXPECT_EQ(studio.session().errors.size(), 1u) << "it is told once";
+  EXPECT_EQ(second_pose(studio.session(), 4), -1);
+  studio.run("edit.undo");
+  studio.wait_idle();
+  ASSERT_TRUE(second(studio).performed) << second(studio).problem;
+  EXPECT_EQ(second(studio).performed->motion.poses.size(), 12u);
 }
 
 TEST_F(SecondBodyTest, IsThereAgainWhenTheDocumentIsOpened) {

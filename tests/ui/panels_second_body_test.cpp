@@ -45,6 +45,17 @@ TEST_F(SecondBodyPanel, EachBonesMatchIsChosenFromAList) {
   EXPECT_FALSE(shown("bones.match.3"));
 }
 
+TEST_F(SecondBodyPanel, WhatItPerformsIsChosenAmongTheClips) {
+  show_second();
+  EXPECT_FALSE(shown("bones.perform_clip"));
+  session.document.bones.clips = {{"nod", {}}};
+  frame(2);
+  expect_click("bones.perform_clip.1", {"bones.perform_clip nod"});
+  session.document.bones.second.clip = "nod";
+  frame(2);
+  expect_click("bones.perform_clip.0", {"bones.perform_clip motion"});
+}
+
 TEST_F(SecondBodyPanel, IsExportedAndDropped) {
   show_second();
   expect_click("bones.perform_export", {"dialog.open export_second_body"});

@@ -34,6 +34,16 @@ std::string size_words(const LaidBody& laid) {
          (laid.mirrored() ? ", mirrored" : "");
 }
 
+/// The found motion or a clip that was kept.
+void draw_clip(const app::Session& session, PanelContext& context) {
+  const app::OwnBones& bones = session.document.bones;
+  if (bones.clips.empty()) return;
+  std::vector<std::string> labels = {"What was found"}, words = {app::kFoundClip};
+  for (const app::MadeClip& clip : bones.clips) labels.push_back(clip.name), words.push_back(clip.name);
+  ask_choice(context, {"bones.perform_clip", "Performs", "What was found, or a clip that was kept"}, labels,
+             words, bones.second.clip.empty() ? app::kFoundClip : bones.second.clip);
+}
+
 /// Those of the second that have no partner, "a, b".
 std::string without_partner(const app::SecondBodyState& second) {
   std::string names;
@@ -110,6 +120,7 @@ void draw_second_body(const app::Session& session, PanelContext& context) {
                        "dialog.open second_body"};
   if (path.empty()) return ask_button(context, choose);
   row_text(context.ui, "Body", file_name(path));
+  draw_clip(session, context);
   if (second.job != 0) draw_performing(session, context);
   if (second.job == 0 && !second.other && second.problem.empty())
     hint(context.ui, "Begins as soon as all frames are read.");

@@ -1,7 +1,7 @@
 #include "ui/viewport/second_body_view.hpp"
 
 #include "app/session/follow.hpp"
-#include "retarget/base/index.hpp"
+#include "app/session/made_motions.hpp"
 #include "retarget/geometry/cloud_normals.hpp"
 
 namespace understudy::ui {
@@ -39,8 +39,8 @@ void add_second_body(const app::Session& session, int frame, const Vec3& aside, 
                      render::Scene& scene) {
   const auto& body = session.second.performed;
   const auto& found = session.bones.rig;
-  const int at = body && found ? app::frame_of_rig(*found, frame) : -1;
-  if (at < 0 || at >= ssize(body->motion.poses)) return;
+  const int at = app::second_pose(session, frame);
+  if (at < 0) return;
   const BoneMatches& matches = session.second.matches;
   const Mesh& surface = body->rig.surface;
   const Vec3 place = aside + app::second_place(session);

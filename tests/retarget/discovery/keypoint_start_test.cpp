@@ -97,5 +97,47 @@ TEST(KeypointStart, EveryKeypointOwnsAPoint) {
   EXPECT_EQ(start.tracks.motions.size(), 3u);
 }
 
+TEST(KeypointStart, OneFrameGivesARigAtRestWithJointsAtTheKeypoints) {
+  ScanSequence one;
+  one.name = "arm.ply", one.count = 1;
+  one.scan = [](int) { return sparse_arm(0.6f, 1); };
+  ArmFinder* const arm = new ArmFinder(true);
+  const Points places = arm->find({one.scan(0)})[0].places;
+  DiscoveryOptions options;
+  options.keypoints.reset(arm);
+  std::vector<PartsSoFar> shown;
+  options.parts_found = [&](PartsSoFar parts) { shown.push_back(std::move(parts)); };
+  const DiscoveredRig rig = discover(one, options);
+  ASSERT_EQ(rig.found.rig.count(), 3);
+  EXPECT_TRUE(rig.seen_once());
+  EXPECT_EQ(rig.found.motion.poses.size(), 1u);
+  for (const RigJoint& joint : rig.found.rig.joints) {
+    const int k = std::stoi(joint.name.substr(9)) - 1;
+    EXPECT_LT((joint.rest - places.row(k).transpose()).norm(), 0.02f) << joint.name;
+    EXPECT_EQ(joint.parent < 0 ? JointKind::Free : JointKind::Ball, joint.kind);
+  }
+  EXPECT_LT(rig.off_m.at(0), 0.02f);
+  ASSERT_EQ(shown.size(), 1u);
+  EXPECT_EQ(shown[0].tree.size(), 3u);
+  one.scan = [](int) { return Mesh{}; };
+  EXPECT_NE(failure_of([&] { discover(one, options); }).find("arm.ply: no frame can be used"),
+            std::string::npos);
+  options.keypoints.reset();
+  EXPECT_NE(failure_of([&] { discover(one, options); }).find("two frames or more"), std::string::npos);
+}
+
+TEST(KeypointStart, KeypointsAreShownBeforeTheirBonesAreFitted) {
+  ScanSequence scans;
+  scans.count = 6;
+  scans.scan = [](int t) { return sparse_arm(0.2f * static_cast<float>(t), t); };
+  DiscoveryOptions options;
+  options.keypoints = std::make_shared<ArmFinder>(true);
+  float share = 0, first = -1;
+  options.progress = [&](const DiscoveryProgress& at) { return share = at.share, true; };
+  options.parts_found = [&](const PartsSoFar&) { first = first < 0 ? share : first; };
+  discover(scans, options);
+  EXPECT_LE(first, 0.1f) << "as soon as the scans are read";
+}
+
 }  // namespace
 }  // namespace understudy

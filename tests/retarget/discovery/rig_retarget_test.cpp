@@ -55,14 +55,14 @@ RiggedMotion* TwoLamps::target;
 LaidBody* TwoLamps::laid;
 
 TEST_F(TwoLamps, BonesAreMatchedOneToOneByWhereTheyLie) {
-  const BoneMatches matches = match_bones(bone_costs(*laid, *source, *target));
+  const BoneMatches matches = match_bones(bone_costs(*laid, *source, *target), source->rig, target->rig);
   for (int k = 0; k < target->rig.count(); ++k) EXPECT_EQ(matches.partner[static_cast<size_t>(k)], k);
   EXPECT_LT(*std::max_element(matches.cost.begin(), matches.cost.end()), 0.6f);
   EXPECT_FALSE(laid->mirrored());
 }
 
 TEST_F(TwoLamps, TheSecondDoesWhatTheFirstDid) {
-  const BoneMatches matches = match_bones(bone_costs(*laid, *source, *target));
+  const BoneMatches matches = match_bones(bone_costs(*laid, *source, *target), source->rig, target->rig);
   const RiggedMotion performed = performed_by(*source, *target, *laid, matches);
   ASSERT_EQ(performed.motion.poses.size(), static_cast<size_t>(kClip));
   const double error = error_pct(performed, *source, target->rig);
@@ -70,8 +70,18 @@ TEST_F(TwoLamps, TheSecondDoesWhatTheFirstDid) {
   EXPECT_LT(2 * error, error_pct(*target, *source, target->rig));  // than what it did itself
 }
 
+TEST_F(TwoLamps, TheSecondDoesAnotherMotionOfTheFirst) {
+  const BoneMatches matches = same_bones(target->rig.count());
+  const RigMotion other = creature_motion(CreatureKind::Lamp, source->rig, 1, kClip / 2, 15, 7);
+  RigRetargetOptions options;
+  options.motion = &other;
+  const RiggedMotion performed = performed_by(*source, *target, *laid, matches, options);
+  ASSERT_EQ(performed.motion.poses.size(), static_cast<size_t>(kClip / 2));
+  EXPECT_LT(error_pct(performed, {source->rig, other}, target->rig), 2.5);
+}
+
 TEST_F(TwoLamps, ABoneWithoutAPartnerGoesWithItsNeighbours) {
-  BoneMatches matches = match_bones(bone_costs(*laid, *source, *target));
+  BoneMatches matches = match_bones(bone_costs(*laid, *source, *target), source->rig, target->rig);
   const int last = target->rig.count() - 1;
   matches.partner.back() = -1;
   const RiggedMotion performed = performed_by(*source, *target, *laid, matches);
@@ -105,6 +115,55 @@ TEST_F(TwoLamps, OneScanGetsTheOthersBones) {
   EXPECT_LT((made.rig.rest_joints() - joints).rowwise().norm().mean(), 0.06f * size);
   const RiggedMotion performed = performed_by(*source, made, once, same_bones(made.rig.count()));
   EXPECT_LT(error_pct(performed, *source, target->rig), 4);
+}
+
+/// Bones of these names and parents, and nothing else.
+Rig named_tree(const std::vector<std::pair<std::string, int>>& bones) {
+  Rig rig;
+  for (const auto& [name, parent] : bones)
+    rig.joints.push_back({name, parent, parent < 0 ? JointKind::Free : JointKind::Ball});
+  return rig;
+}
+
+/// Where both rigs lie alike: each bone on the one of its number.
+BoneMatches matched(const Rig& source, const Rig& target) {
+  Eigen::MatrixXd costs = Eigen::MatrixXd::Constant(target.count(), source.count(), 0.7);
+  costs.diagonal().setConstant(0.1);
+  return match_bones(costs, source, target);
+}
+
+TEST(MatchedBones, OfTheSameNameAndParentAreEachOthersThoughTheyLieElsewhere) {
+  const Rig source =
+                named_tree({{"keypoint 7", -1}, {"keypoint 2", 0}, {"keypoint 3", 0}, {"keypoint 1", 2}}),
+            shuffled =
+                named_tree({{"keypoint 7", -1}, {"keypoint 3", 0}, {"keypoint 1", 1}, {"keypoint 2", 0}});
+  const BoneMatches matches = matched(source, shuffled);
+  EXPECT_EQ(matches.partner, (std::vector<int>{0, 2, 3, 1}));
+  EXPECT_EQ(matches.cost, (std::vector<float>{0.1f, 0.7f, 0.7f, 0.7f})) << "what they have in common is told";
+}
+
+TEST(MatchedBones, WithoutACommonNameGetWhatIsLeft) {
+  const Rig source = named_tree({{"hips", -1}, {"left", 0}, {"right", 0}}),
+            target = named_tree({{"hips", -1}, {"right", 0}, {"tail", 0}});
+  EXPECT_EQ(matched(source, target).partner, (std::vector<int>{0, 2, 1}));
+}
+
+TEST(MatchedBones, OfNamesThatOnlyCountAreNotBelieved) {
+  for (const std::string word : {"bone ", "Bone.00", "joint", "node_", ""}) {
+    const Rig source = named_tree({{word + "0", -1}, {word + "1", 0}, {word + "2", 0}}),
+              target = named_tree({{word + "0", -1}, {word + "2", 0}, {word + "1", 0}});
+    EXPECT_EQ(matched(source, target).partner, (std::vector<int>{0, 1, 2})) << word;
+  }
+}
+
+TEST(MatchedBones, OfNamesThatContradictTheTreeAreNotBelieved) {
+  const Rig source = named_tree({{"a", -1}, {"b", 0}, {"c", 1}, {"d", 2}}),
+            target = named_tree({{"a", -1}, {"c", 0}, {"b", 1}, {"d", 2}});
+  EXPECT_EQ(matched(source, target).partner, (std::vector<int>{0, 1, 2, 3}));
+  const Rig twins = named_tree({{"a", -1}, {"arm", 0}, {"leg", 0}, {"arm", 2}}),
+            once = named_tree({{"a", -1}, {"leg", 0}, {"arm", 0}, {"hand", 2}});
+  EXPECT_EQ(matched(twins, once).partner, (std::vector<int>{0, 2, 1, 3}))
+      << "two arms: the leg alone is told";
 }
 
 TEST(RigRetarget, ALeftHandIsARightHandsMirrorImage) {
