@@ -300,7 +300,7 @@ Image strip(Renderer& renderer, const std::vector<StripRow>& performers, const s
   const bool side_by_side = seconds.size() == 1;
   std::vector<std::vector<Cell>> cells(side_by_side ? 1 : performers.size());
   std::vector<Header> headers;
-  bool anybody = false, bones = false;
+  bool anybody = false, sides = false;
   for (size_t p = 0; p < performers.size(); ++p) {
     US_CHECK(performers[p].moments.size() == seconds.size(), performers[p].caption, ": has ",
              performers[p].moments.size(), " moments, the strip ", seconds.size());
@@ -308,7 +308,7 @@ Image strip(Renderer& renderer, const std::vector<StripRow>& performers, const s
       Cell cell = make_cell(m.mesh, m.skeleton, performers[p].color, /*strays=*/true);
       cell.left_out = m.mesh.vertices.rows() == 0 && !m.skeleton;
       anybody = anybody || !cell.left_out;
-      bones = bones || m.skeleton;
+      sides = sides || (m.skeleton && !m.skeleton->sides.empty());
       cells[side_by_side ? 0 : p].push_back(std::move(cell));
     }
     if (side_by_side) headers.push_back({performers[p].caption, ""});
@@ -323,7 +323,7 @@ Image strip(Renderer& renderer, const std::vector<StripRow>& performers, const s
     for (const double time : seconds) headers.push_back({"", time_text(time)});
   SheetOptions sheet;
   sheet.title = options.title, sheet.width = options.width, sheet.columns = options.columns;
-  return draw(renderer, std::move(rows), headers, sheet, bones);
+  return draw(renderer, std::move(rows), headers, sheet, sides);
 }
 
 Image strip(const std::vector<StripRow>& performers, const std::vector<double>& seconds,

@@ -1,7 +1,8 @@
 #!/bin/bash
-# screenshots/marionette.sh [WHAT...]: makes the pictures of found bones and their motions in this folder, 61 to 64. WHAT: more (further
-# motions of found bones, 61 and 62), keypoints (63: those that networks of a kind see in single scans of two bodies each), between
-# (64: a network and even turns between two poses, and what the animal did); without one all. $WEIGHTS: another folder of weights.
+# screenshots/marionette.sh [WHAT...]: makes the pictures of found bones and their motions in this folder, 61 to 64.
+# WHAT: more (further motions of found bones, 61 and 62), keypoints (63: those that networks of a kind see in single
+# scans of two bodies each), between (64: a network and even turns between two poses, and what the animal did); without
+# one all. $WEIGHTS: another folder of weights.
 . "$(dirname "$0")/common.sh"
 weights=${WEIGHTS:+--weights $WEIGHTS}
 
@@ -24,28 +25,28 @@ seen() {
 keypoints() {
   local -a rigs=()
   "$understudy" cases --suite creatures --out "$work/bodies" --cases 16 --frames 12 --points 8000
-  for frame in 10 60; do seen person assets/samples/scan $frame --remove-floor --largest-part; done
-  for frame in 4 16; do seen person assets/samples/walk $frame --remove-floor --largest-part; done
+  seen person assets/samples/scan 10 --remove-floor --largest-part
+  seen person assets/samples/walk 4 --remove-floor --largest-part
   for kind in quadruped hand; do
-    for body in "$work/bodies/$kind"*; do
-      for frame in 1 10; do seen "$kind" "$body/source" $frame; done
-    done
+    for body in "$work/bodies/$kind"*; do seen "$kind" "$body/source" 10; done
   done
-  "$understudy" sheet "${rigs[@]}" --bones --seconds 0 --columns 4 --out "$work/63_keypoints.png" \
-    --title "Keypoints and trees that networks see in single scans: two people, two horses, two hands" \
-    --captions "$(for kind in person horse hand; do printf '%s,' "one $kind"{,} "another $kind"{,}; done | sed 's/,$//')"
+  "$understudy" sheet "${rigs[@]}" --bones --seconds 0 --out "$work/63_keypoints.png" \
+    --title "What networks see in one scan: two people, two horses, two hands" \
+    --captions "A person,Another,A horse,Another,A hand,Another"
   shown 63_keypoints 1200
 }
 
 between() {
-  local rig from=6 to=24
+  local rig from=6 to=24  # at 30 frames/s: 0.2 s to 0.8 s
   "$understudy" cases --suite marionette-gaps --out "$work/gaps" --cases 3
   rig=$(echo "$work"/gaps/quadruped100*/rig.glb)
   for engine in vrnn slerp; do
-    "$understudy" generate --rig "$rig" --between $from $to --frames $((to - from + 1)) --engine $engine $weights --out "$work/$engine.glb"
+    "$understudy" generate --rig "$rig" --between $from $to --frames $((to - from + 1)) --engine $engine $weights \
+      --out "$work/$engine.glb"
   done
-  "$understudy" sheet "$rig@$(bc -l <<<"$from / 30")" "$work/vrnn.glb" "$work/slerp.glb" --bones --every 0.1 --seconds 0.61 \
-    --captions "What it did,A network,Even turns" --title "Between two poses" --out "$work/64_between_poses.png"
+  "$understudy" sheet "$rig@0.2" "$work/vrnn.glb" "$work/slerp.glb" --bones --every 0.1 \
+    --seconds 0.61 --out "$work/64_between_poses.png" \
+    --captions "What it did,A network,Even turns" --title "Between two poses"
   shown 64_between_poses 1440
 }
 

@@ -71,8 +71,8 @@ struct GeneratedMotions {
 
 /// Throws Error where these options are not of that rig, one sentence. known: its rig.name is named.
 void check_generation(const RiggedMotion& known, const GenerationOptions& options);
-/// Makes them. going_on: called before each with the number that is done; false ends it. first_frame: what the
-/// remark calls the clip's first one. Throws Error as check_generation() and the loader do.
+/// Makes them. going_on: called before each with the number that is done; false ends it. first_frame: what
+/// the remark calls the clip's first one. Throws Error as check_generation() and the loader do.
 GeneratedMotions generate_motions(const RiggedMotion& known, const GenerationOptions& options,
                                   const DynamicsLoader& load, const std::function<bool(int)>& going_on,
                                   int first_frame = 0);

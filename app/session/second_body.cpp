@@ -144,7 +144,8 @@ void Studio::follow_second_body() {
     return;
   }
   if (last->ended) {
-    if (!state.other && state.problem != last->problem) take_in_second_body(*last);  // it is wanted again
+    const bool is_told = !last->problem.empty() && state.problem == last->problem;
+    if (!state.other && !is_told) take_in_second_body(*last);  // it is wanted again
     return;
   }
   const std::lock_guard lock(last->mutex);

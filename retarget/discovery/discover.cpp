@@ -45,9 +45,11 @@ void in_halves(size_t count, const Function& f) {
   first.join();
 }
 
+/// Of a single scan keypoints alone tell a skeleton.
 void check_count(const ScanSequence& scans, int usable, bool keypoints, const std::string& wrong = {}) {
-  US_CHECK(usable >= 1 || !keypoints, scans.name, ": no frame can be used", wrong);
-  US_CHECK(usable >= 2 || keypoints, scans.name,
+  const bool one_is_enough = keypoints && scans.count == 1;
+  US_CHECK(usable >= 1 || !one_is_enough, scans.name, ": its frame cannot be used", wrong);
+  US_CHECK(usable >= 2 || one_is_enough, scans.name,
            ": a skeleton is found in how a thing moves: that takes two frames or more, not ", usable, wrong);
 }
 
@@ -136,7 +138,7 @@ void Discovery::read_key_frames() {
     const float share = static_cast<float>(t) / static_cast<float>(wanted.back() + 1);
     US_CHECK(report("Reading", kReadingEnds * share), scans_.name, ": ended before a skeleton was found");
   }
-  check_count(scans_, static_cast<int>(ssize(frames_)), options_.keypoints != nullptr, wrong);
+  check_count(scans_, ssize(frames_), options_.keypoints != nullptr, wrong);
 }
 
 int Discovery::most_open() const {
@@ -182,7 +184,8 @@ void Discovery::start_from_network() {
   show_parts();
 }
 
-/// Of one frame: nothing has moved that could tell where joints are, so they stay where the network sees them.
+/// Of one frame: nothing has moved that could tell where joints are, so they stay where the network
+/// sees them.
 DiscoveredRig Discovery::at_rest() {
   bind_points();
   bones_.assign(1, BoneMotions(tree_.part_of_bone.size()));

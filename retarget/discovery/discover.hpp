@@ -72,8 +72,8 @@ struct DiscoveredRig {
 /// parts, finds their joints and tree, and fits the rig to the scans; other frames are followed. After Chang
 /// and Zwicker 2011 and Le and Deng 2014, without correspondence. Looks at all frames, unlike RigFollower.
 /// Of one frame with keypoints the rig at rest. The same scans give the same bytes. Throws Error naming the
-/// scans where too few frames can be used (two, with keypoints one), and where it is ended before a skeleton was found. Warns of scans that seem to show more than one
-/// thing.
+/// scans where too few frames can be used (two; of a single scan, with keypoints, that one), and where it is
+/// ended before a skeleton was found. Warns of scans that seem to show more than one thing.
 DiscoveredRig discover(const ScanSequence& scans, const DiscoveryOptions& options = {});
 
 }  // namespace understudy

@@ -27,11 +27,6 @@ int64_t slots_of(const std::string& kind) {
   return kind == "hand" ? 28 : kind == "arm" ? 12 : 24;  // paper 3, tables 4 to 8
 }
 
-/// Of the volume loss. A hand's palm would get half the keypoints else (so paper 3, table 5, too).
-double volume_weight(const std::string& kind) {
-  return kind == "hand" ? 0.1 : 1;
-}
-
 /// Rows of what the network says.
 nn::SlotOutput rows_of(const nn::SlotOutput& all, const torch::Tensor& rows) {
   return {all.heading.index_select(0, rows), all.places.index_select(0, rows),
@@ -82,8 +77,7 @@ class SlotTrainer final : public TrainingRun {
     const auto there = few.index_select(0, t);
     LossSum loss;
     loss.add("warp", nearest_distance(moved, there) + nearest_distance(there, moved));
-    loss.add("vol", volume_fitting_loss(points, torch::ones({points.size(0), points.size(1)}), all.places),
-             volume_weight(options_.kind));
+    loss.add("vol", volume_fitting_loss(points, torch::ones({points.size(0), points.size(1)}), all.places));
     loss.add("inside", nearest_distance(all.places, points), 0.1);
     const auto first = index.select(1, 0), turned = torch::arange(count, torch::kInt64) + count * kSlotWindow;
     const auto wanted = torch::matmul(all.places.index_select(0, first), batch.turned.transpose(1, 2));
@@ -97,11 +91,10 @@ class SlotTrainer final : public TrainingRun {
     const auto missed = missed_by(before, after);
     const auto apart = nn::squared_distance(before.places, before.places).clamp_min(0).sqrt();
     average_->learn_links(missed.mean(0), apart.mean(0));
-    if (done_share() > kTreeBegins) {
-      const auto affinity = affinity_of_links(average_->link_costs());
-      loss.add("joint", joint_loss(affinity, missed), 0.15);
-      add_tree(affinity, frames, loss);
-    }
+    const auto affinity = affinity_of_links(average_->link_costs());
+    const double hangs = done_share() > kTreeBegins ? 1 : 0;
+    loss.add("joint", joint_loss(affinity, missed), 0.15 * hangs);
+    add_tree(affinity, frames, hangs, loss);
     return loss;
   }
 
@@ -113,11 +106,12 @@ class SlotTrainer final : public TrainingRun {
   }
 
   /// Paper 3's of what hangs together, with affinities that follow from how keypoints carry each other.
-  static void add_tree(const torch::Tensor& affinity, const torch::Tensor& places, LossSum& loss) {
+  static void add_tree(const torch::Tensor& affinity, const torch::Tensor& places, double weight,
+                       LossSum& loss) {
     const auto intensity = torch::ones({places.size(0), places.size(1), places.size(2)});
-    loss.add("traj", trajectory_loss(places, affinity, intensity));
-    loss.add("local", local_loss(places, affinity, intensity), 0.1);
-    loss.add("time", time_loss(places, affinity, intensity));
+    loss.add("traj", trajectory_loss(places, affinity, intensity), weight);
+    loss.add("local", local_loss(places, affinity, intensity), 0.1 * weight);
+    loss.add("time", time_loss(places, affinity, intensity), weight);
   }
 
   /// Where a body faces turns with it, hardly changes from frame to frame, and is mostly where it goes.

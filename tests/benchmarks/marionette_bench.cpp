@@ -1,5 +1,5 @@
-// Prints what keypoints cost a frame, with one thread: by slots, and by paper 3's own network at the paper's size
-// and at the trained one. Their numbers are drawn at random, which costs the same.
+// Prints what keypoints cost a frame, with one thread: by slots, and by paper 3's own network at the paper's
+// size and at the trained one. Their numbers are drawn at random, which costs the same.
 #include <torch/torch.h>
 
 #include <chrono>

@@ -62,16 +62,16 @@ TEST_F(Sheet, PosesAndPicturesOfThemHaveRowsOfTheirOwn) {
 }
 
 TEST_F(Sheet, RigsAreShownWithTheirBones) {
-  ASSERT_EQ(run_program({"retarget", "--source", scans(), "--target", target(), "--out", out("a.glb")}).code,
-            0);
+  const std::string rig = scratch.path("a.glb");
+  ASSERT_EQ(run_program({"retarget", "--source", scans(), "--target", target(), "--out", rig}).code, 0);
   for (const std::string file : {"with.png", "without.png"}) {
-    std::vector<std::string> words = {out("a.glb"), target(), "--seconds", "0", "--out", out(file)};
+    std::vector<std::string> words = {rig, rig, "--seconds", "0", "--out", scratch.path(file)};
     if (file == "with.png") words.emplace_back("--bones");
     const Finished done = sheet(words);
     ASSERT_EQ(done.code, 0) << done.err;
     EXPECT_NE(done.out.find("2 rows, 1 moments"), std::string::npos) << done.out;
   }
-  EXPECT_NE(read_bytes(out("with.png")), read_bytes(out("without.png")));
+  EXPECT_NE(read_bytes(scratch.path("with.png")), read_bytes(scratch.path("without.png")));
   expect_clean_failure(sheet({walk(), "--bones", "--out", out("no.png")}), "walk.npz");
 }
 
