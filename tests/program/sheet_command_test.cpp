@@ -115,5 +115,9 @@ TEST_F(PictureScript, MakesThoseOfFlatPeople) {
               {"55_flat_dance", "56_flat_crowd", "57_flat_turn", "59_flat_studio", "60_flat_lifted"});
 }
 
+TEST_F(PictureScript, MakesThoseOfKeypointsAndMoreMotion) {
+  expect_made("marionette.sh", {"61_more_motion", "62_between_frames", "63_keypoints", "64_between_poses"});
+}
+
 }  // namespace
 }  // namespace understudy::tests

@@ -50,10 +50,10 @@ TEST_F(SecondBodyPanel, WhatItPerformsIsChosenAmongTheClips) {
   EXPECT_FALSE(shown("bones.perform_clip"));
   session.document.bones.clips = {{"nod", {}}};
   frame(2);
-  expect_click("bones.perform_clip.1", {"bones.perform_clip nod"});
+  expect_choice("bones.perform_clip", 1, {"bones.perform_clip nod"});
   session.document.bones.second.clip = "nod";
   frame(2);
-  expect_click("bones.perform_clip.0", {"bones.perform_clip motion"});
+  expect_choice("bones.perform_clip", 0, {"bones.perform_clip motion"});
 }
 
 TEST_F(SecondBodyPanel, IsExportedAndDropped) {
