@@ -163,7 +163,7 @@ std::vector<int> same_names(const Rig& source, const Rig& target) {
     const int above = target.joints[k].parent, other = source.joints[static_cast<size_t>(named[k])].parent;
     const bool agrees = above < 0 || other < 0 ? above == other : named[static_cast<size_t>(above)] == other;
     if (agrees) believed[k] = named[k];
-    ++known, agreeing += agrees;
+    if (above >= 0) ++known, agreeing += agrees;  // that both have a root tells nothing
   }
   if (2 * agreeing <= known) std::fill(believed.begin(), believed.end(), -1);
   return believed;
