@@ -145,7 +145,8 @@ class NameColors {
   Vec3 of(const std::string& name) {
     const size_t i = numbers_.try_emplace(name, numbers_.size()).first->second;
     constexpr size_t kCount = render::kCategories.size();
-    return std::pow(0.55f, static_cast<float>(i / kCount)) * render::kCategories[i % kCount];
+    const size_t rounds = i / kCount;
+    return std::pow(0.55f, static_cast<float>(rounds)) * render::kCategories[i % kCount];
   }
 
  private:

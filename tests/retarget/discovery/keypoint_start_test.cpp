@@ -120,7 +120,7 @@ TEST(KeypointStart, OneFrameGivesARigAtRestWithJointsAtTheKeypoints) {
   ASSERT_EQ(shown.size(), 1u);
   EXPECT_EQ(shown[0].tree.size(), 3u);
   one.scan = [](int) { return Mesh{}; };
-  EXPECT_NE(failure_of([&] { discover(one, options); }).find("arm.ply: no frame can be used"),
+  EXPECT_NE(failure_of([&] { discover(one, options); }).find("arm.ply: its frame cannot be used"),
             std::string::npos);
   options.keypoints.reset();
   EXPECT_NE(failure_of([&] { discover(one, options); }).find("two frames or more"), std::string::npos);
