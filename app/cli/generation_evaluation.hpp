@@ -11,8 +11,8 @@ namespace understudy::app {
 /// Engines: lerp, slerp; match, which knows all of the clip but the frames of the one gap; and where the
 /// folder of weights has them vrnn and positions (marionette_dynamics_KIND_positions.weights), which know
 /// all keys. Generation, as `generate` does it: five frames given, 25 made by vrnn: made_skate, of people,
-/// and the clip's own made_skate_true (foot_skate); made_nearest_mm, distance_to_nearest() of the clip, and of
-/// people made_nearest_training_mm, of all clips in the training split of options.data where it is told;
+/// and the clip's own made_skate_true (foot_skate); made_nearest_mm, distance_to_nearest() of the clip, and
+/// of people made_nearest_training_mm, of all clips in the training split of options.data where it is told;
 /// made_ms. Throws Error.
 void evaluate_generation(const Case& c, const EvalOptions& options, CaseResult& result);
 

@@ -57,7 +57,9 @@ TEST_F(MadeMotionsPath, ASecondBodyPerformsAClipAndIsExported) {
   play("click bones.perform\nframes 3\n" + typed("browser.path", path("second.glb")) + "wait\nframes 3");
   ASSERT_TRUE(session().second.performed) << session().second.problem;
   EXPECT_EQ(session().second.performed->motion.poses.size(), static_cast<size_t>(understudy::kFrames));
-  play("click bones.perform_clip\nframes 3\nclick bones.perform_clip.1\nwait\nframes 3\nexpect_value undo_label \"Perform motion 2\"");
+  play(
+      "click bones.perform_clip\nframes 3\nclick bones.perform_clip.1\nwait\nframes 3\nexpect_value "
+      "undo_label \"Perform motion 2\"");
   ASSERT_TRUE(session().second.performed) << session().second.problem;
   EXPECT_EQ(session().second.performed->motion.poses.size(), 20u);
   play("click bones.perform_export\nframes 3\n" + typed("browser.name", path("nod.glb")) + "wait");
