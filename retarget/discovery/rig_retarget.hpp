@@ -12,8 +12,8 @@ struct RigRetargetOptions {
 
 /// The target's rig in a pose for each frame of the source's motion: partners turn alike from where they lie
 /// alike, bones without one go with their neighbours; the path is the source's, scaled; sliders go as far for
-/// their size. Where a bone of the source touches the lowest ground and stays, its partner stays on the target's
-/// ground: the path gives first, then the last two bones. Throws Error where matches do not fit.
+/// their size. Where a bone of the source touches the lowest ground and stays, its partner stays on the
+/// target's ground: the path gives first, then the last two bones. Throws Error where matches do not fit.
 RiggedMotion performed_by(const RiggedMotion& source, const RiggedMotion& target, const LaidBody& laid,
                           const BoneMatches& matches, const RigRetargetOptions& options = {});
 
