@@ -161,8 +161,7 @@ Action declare_eval(CLI::App& command) {
       "--data", options->data,
       "the folder of people and motions that --fill nearest looks into, and in which the motion nearest to a "
       "made one is looked for (marionette-gaps); the folder with the clips of both manners, for the "
-      "baselines "
-      "of style");
+      "baselines of style");
   command.add_option("--judge", options->judge, "weights of `train style-judge` (style)");
   command.add_option("--style-back", options->style_back,
                      "a style that takes back what --style does: there and back again (style)");

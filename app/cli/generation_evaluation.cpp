@@ -17,12 +17,13 @@
 #include "retarget/marionette/motion_match.hpp"
 #include "retarget/metrics/joint_metrics.hpp"
 #include "retarget/metrics/voxel_metrics.hpp"
+#include "retarget/rig/person_rig.hpp"
 
 namespace understudy::app {
 namespace {
 
 constexpr std::array<int, 7> kApart = {3, 5, 10, 15, 20, 25, 30};
-constexpr int kGivenPoses = 5, kMadePoses = 25;
+constexpr int kMadePoses = 25;
 
 /// Every so many frames, from the first.
 std::vector<PoseKey> keys_apart(const RigMotion& motion, int apart) {
@@ -99,9 +100,7 @@ double distance_to_training(const understudy::Rig& rig, const std::vector<RigPos
       check_interrupt("while training data was searched");
       if (clip.motion.poses.size() < made.size()) continue;
       std::vector<RigPose> poses;
-      for (const Pose& pose : clip.motion.poses)
-        poses.push_back(
-            {pose.root, {pose.local.begin(), pose.local.end()}, std::vector<float>(kJointCount, 0)});
+      for (const Pose& pose : clip.motion.poses) poses.push_back(person_pose(pose));
       nearest = std::min(nearest, distance_to_nearest(rig, made, poses));
     }
   return nearest;
@@ -112,13 +111,13 @@ void add_generation(const RiggedMotion& truth, MotionDynamics& dynamics, const s
                     Metrics& to) {
   GenerationOptions options;
   options.engine = "vrnn";
-  options.frames = kGivenPoses + kMadePoses;
+  options.frames = kGivenFrames + kMadePoses;
   const auto load = [&](const understudy::Rig&) { return dynamics.clone(); };
   const auto began = std::chrono::steady_clock::now();
   const GeneratedMotions motions = generate_motions(truth, options, load, [](int) { return true; });
   to.emplace_back("made_ms", ms_since(began));
   const std::vector<RigPose>& poses = motions.motions[0].motion.poses;
-  const std::vector<RigPose> made(poses.begin() + kGivenPoses, poses.end());
+  const std::vector<RigPose> made(poses.begin() + kGivenFrames, poses.end());
   to.emplace_back("made_nearest_mm", 1000 * distance_to_nearest(truth.rig, made, truth.motion.poses));
   if (dynamics.kind() != "person") return;
   if (!data.empty())

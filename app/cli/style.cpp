@@ -15,6 +15,7 @@
 #include "retarget/character/rig_character.hpp"
 #include "retarget/formats/file_formats.hpp"
 #include "retarget/formats/motion_writers.hpp"
+#include "retarget/rig/person_rig.hpp"
 #include "retarget/style/load_style.hpp"
 
 namespace understudy::app {
@@ -71,16 +72,11 @@ void add_bone_shapes(const Joints& rest, understudy::Rig& rig) {
 }
 
 RiggedMotion rigged(const StyledClip& clip, const std::string& name) {
-  RiggedMotion performed;
+  RiggedMotion performed{person_rig(clip.rest), {}};
   performed.rig.name = name;
-  for (int j = 0; j < kJointCount; ++j)
-    performed.rig.joints.push_back({kJointNames[j], kParents[j], j == 0 ? JointKind::Free : JointKind::Ball,
-                                    clip.rest.row(j).transpose(), Vec3::UnitY()});
   add_bone_shapes(clip.rest, performed.rig);
   performed.motion.fps = clip.fps;
-  for (const Pose& pose : clip.poses)
-    performed.motion.poses.push_back(
-        {pose.root, {pose.local.begin(), pose.local.end()}, std::vector<float>(kJointCount, 0)});
+  for (const Pose& pose : clip.poses) performed.motion.poses.push_back(person_pose(pose));
   return performed;
 }
 

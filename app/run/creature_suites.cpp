@@ -15,6 +15,7 @@
 #include "retarget/body/exact_body.hpp"
 #include "retarget/creature/creature.hpp"
 #include "retarget/math/rotation.hpp"
+#include "retarget/rig/person_rig.hpp"
 
 namespace understudy::app {
 namespace {
@@ -59,16 +60,13 @@ CreaturePlan creature_plan(size_t which, uint64_t seed, int frames) {
           [=] { return make_creature(kind, seed); }};
 }
 
-/// People's 22 joints where they are at rest.
-understudy::Rig person_rig(const RigTruth& truth) {
-  understudy::Rig rig;
-  rig.name = "person";
-  for (int j = 0; j < kJointCount; ++j) {
-    const RigidMotion& bone = truth.bones[0][static_cast<size_t>(j)];
-    rig.joints.push_back({kJointNames[static_cast<size_t>(j)], kParents[static_cast<size_t>(j)],
-                          j == 0 ? JointKind::Free : JointKind::Ball,
-                          bone.inverse()(truth.joints[0].row(j).transpose()), Vec3::UnitY()});
-  }
+/// Of the joints where they are at rest.
+understudy::Rig person_of(const RigTruth& truth) {
+  Joints rest;
+  for (int j = 0; j < kJointCount; ++j)
+    rest.row(j) =
+        truth.bones[0][static_cast<size_t>(j)].inverse()(truth.joints[0].row(j).transpose()).transpose();
+  understudy::Rig rig = person_rig(rest);
   rig.surface = {truth.rest, truth.faces};
   rig.skin = SkinWeights::from(truth.weights);
   return rig;
@@ -79,7 +77,7 @@ void make_rig_case(const CreaturePlan& plan, const SuiteOptions& options) {
   const fs::path folder = fs::path(options.out) / plan.name;
   fs::create_directories(folder);
   const RigTruth truth = plan.make();
-  RiggedMotion performed{plan.rig ? plan.rig() : person_rig(truth), {kFps, {}}};
+  RiggedMotion performed{plan.rig ? plan.rig() : person_of(truth), {kFps, {}}};
   for (const BoneMotions& bones : truth.bones)
     performed.motion.poses.push_back(pose_of(performed.rig, bones));
   write_rig((folder / "rig.glb").string(), performed);

@@ -16,7 +16,6 @@ namespace understudy::app {
 namespace {
 
 constexpr int kMostFrames = 10000, kMostMotions = 100;
-constexpr int kGivenFrames = 5;     // of the clip, that a network goes on from
 constexpr int kTrajectories = 300;  // of the paper's sampling, which has 10,000 on a GPU
 constexpr float kHurry = 1.5f;      // times the fastest of the clip: faster is told
 

@@ -59,6 +59,8 @@ FieldsOf<S, GenerationOptions> fields(V& visit, S& options) {
 /// A network that knows how this rig's kind moves. Throws Error (see nn::load_motion_dynamics).
 using DynamicsLoader = std::function<std::unique_ptr<MotionDynamics>(const understudy::Rig& rig)>;
 
+constexpr int kGivenFrames = 5;  ///< of the clip, that a network goes on from
+
 struct GeneratedMotion {
   uint64_t seed = 1;
   RigMotion motion;

@@ -8,7 +8,7 @@
 #include <numeric>
 #include <utility>
 
-#include "retarget/base/union_find.hpp"
+#include "retarget/base/spanning_tree.hpp"
 #include "retarget/math/rotation.hpp"
 
 namespace understudy {
@@ -130,48 +130,6 @@ std::vector<Link> links_of(const SurfaceTracks& tracks, const RigidParts& parts)
   return links;
 }
 
-std::vector<Link> spanning_tree(const std::vector<Link>& links, int parts) {
-  UnionFind sets(static_cast<size_t>(parts));
-  std::vector<Link> tree;
-  for (const Link& link : links) {
-    if (sets.root(link.a) == sets.root(link.b)) continue;
-    sets.join(link.a, link.b);
-    tree.push_back(link);
-  }
-  return tree;
-}
-
-/// Part by part from the root outwards, with the link that leads to it (-1: the root).
-std::vector<Pair> outwards_from(int root, const std::vector<Link>& tree) {
-  std::vector<Pair> order{{root, -1}};
-  for (size_t at = 0; at < order.size(); ++at)
-    for (size_t l = 0; l < tree.size(); ++l) {
-      const Link& link = tree[l];
-      const int here = order[at].first;
-      if (static_cast<int>(l) == order[at].second || (link.a != here && link.b != here)) continue;
-      order.push_back({link.a == here ? link.b : link.a, static_cast<int>(l)});
-    }
-  return order;
-}
-
-int central_part(const std::vector<Link>& tree, const std::vector<int>& sizes) {
-  int best = 0;
-  double least = -1;
-  for (int root = 0; root < static_cast<int>(sizes.size()); ++root) {
-    std::vector<int> steps(sizes.size(), 0);
-    double sum = 0;
-    for (const auto& [part, link] : outwards_from(root, tree)) {
-      if (link < 0) continue;
-      const int before = tree[static_cast<size_t>(link)].a == part ? tree[static_cast<size_t>(link)].b
-                                                                   : tree[static_cast<size_t>(link)].a;
-      steps[static_cast<size_t>(part)] = steps[static_cast<size_t>(before)] + 1;
-      sum += steps[static_cast<size_t>(part)] * sizes[static_cast<size_t>(part)];
-    }
-    if (least < 0 || sum < least) least = sum, best = root;
-  }
-  return best;
-}
-
 Vec3 centre_of(const Points& points, const std::vector<int>& of_point, int part) {
   Vec3 sum = Vec3::Zero();
   int count = 0;
@@ -190,7 +148,7 @@ int root_of(const SurfaceTracks& tracks, const RigidParts& parts, const std::vec
                      size) &&
         (root < 0 || sizes[static_cast<size_t>(p)] > sizes[static_cast<size_t>(root)]))
       root = p;
-  return root >= 0 ? root : central_part(tree, sizes);
+  return root >= 0 ? root : central_node(tree, sizes);
 }
 
 /// A part that hardly moves against one beside it becomes one with it; false where there is none.
@@ -290,7 +248,7 @@ PartTree find_part_tree(const SurfaceTracks& tracks, RigidParts& parts) {
                    centre_of(tracks.graph.points, parts.of_point, part), Vec3::UnitY()};
     if (l >= 0) {
       const Link& link = tree[static_cast<size_t>(l)];
-      joint.parent = bone[static_cast<size_t>(link.a == part ? link.b : link.a)];
+      joint.parent = bone[static_cast<size_t>(other_end(link, part))];
       joint.kind = link.joint.kind;
       joint.rest = link.joint.rest;
       joint.axis = link.joint.axis;

@@ -5,7 +5,7 @@
 
 #include "retarget/base/index.hpp"
 #include "retarget/marionette/dynamics_rows.hpp"
-#include "retarget/skeleton/skeleton.hpp"
+#include "retarget/rig/person_rig.hpp"
 
 namespace understudy::training {
 namespace {
@@ -25,9 +25,7 @@ void mirror_person(RigMotion& motion) {
     Pose seen;
     seen.root = pose.root;
     std::copy(pose.turns.begin(), pose.turns.end(), seen.local.begin());
-    seen = mirrored(seen);
-    pose.root = seen.root;
-    pose.turns.assign(seen.local.begin(), seen.local.end());
+    pose = person_pose(mirrored(seen));
   }
 }
 

@@ -7,6 +7,7 @@
 #include "retarget/creature/creature.hpp"
 #include "retarget/math/rotation.hpp"
 #include "retarget/networks/train_options.hpp"
+#include "retarget/rig/person_rig.hpp"
 
 namespace understudy::training {
 namespace {
@@ -14,17 +15,8 @@ namespace {
 constexpr uint64_t kTrainCreatures = 100, kFirstDevCreature = 100, kDevCreatures = 10;
 constexpr int kShortestKindRun = 30;  // frames of a clip
 
-Rig person_rig(const ShapedBody& person) {
-  Rig rig;
-  rig.name = "person";
-  for (int j = 0; j < kJointCount; ++j) {
-    RigJoint joint;
-    joint.name = kJointNames[static_cast<size_t>(j)];
-    joint.parent = kParents[static_cast<size_t>(j)];
-    joint.kind = j == 0 ? JointKind::Free : JointKind::Ball;
-    joint.rest = person.joints.row(j).transpose();
-    rig.joints.push_back(joint);
-  }
+Rig rig_of(const ShapedBody& person) {
+  Rig rig = person_rig(person.joints);
   rig.surface = {person.vertices, person.faces};
   rig.skin = SkinWeights::from(person.weights);
   return rig;
@@ -93,13 +85,13 @@ RiggedMotion KindData::draw_person(int frames, double fps, Rng& rng) const {
   do run = &runs_[static_cast<size_t>(rng.below(static_cast<int>(runs_.size())))];
   while (!long_enough(*run));
   const ShapedBody person = people_->body.shaped(random_shape(*people_, rng));
-  RiggedMotion drawn{person_rig(person), {fps, {}}};
+  RiggedMotion drawn{rig_of(person), {fps, {}}};
   const float scale = leg_length(person.joints) / people_->template_leg;
   const auto first = static_cast<float>(run->first + rng.below(run->count - needed + 1));
   for (int t = 0; t < frames; ++t) {
-    const Pose pose = poses_->at(run->clip, first + step * static_cast<float>(t));
-    drawn.motion.poses.push_back(
-        {scale * pose.root, {pose.local.begin(), pose.local.end()}, std::vector<float>(kJointCount, 0)});
+    Pose pose = poses_->at(run->clip, first + step * static_cast<float>(t));
+    pose.root *= scale;
+    drawn.motion.poses.push_back(person_pose(pose));
   }
   return drawn;
 }
