@@ -19,15 +19,10 @@ RigFinder KeypointEvaluation::finder(const EvalOptions& options, const std::stri
   return [&judged](const std::vector<Mesh>& scans, double fps) {
     judged.keypoints.clear(), judged.joints.clear();
     for (const FoundKeypoints& found : judged.network->find(scans)) {
-      Points bright(0, 3);
-      for (Eigen::Index k = 0; k < found.places.rows(); ++k) {
-        bright.conservativeResize(bright.rows() + 1, 3);
-        // One that is too faint is near nothing.
-        if (found.intensity[static_cast<size_t>(k)] >= kLeastIntensity)
-          bright.bottomRows<1>() = found.places.row(k);
-        else
-          bright.bottomRows<1>().setConstant(kFarAway);
-      }
+      Points bright = found.places;
+      for (Eigen::Index k = 0; k < bright.rows(); ++k)
+        if (found.intensity[static_cast<size_t>(k)] < kLeastIntensity)
+          bright.row(k).setConstant(kFarAway);  // one that is too faint is near nothing
       judged.keypoints.push_back(bright);
     }
     FoundRig rig = rig_finder(judged.network)(scans, fps);
@@ -44,6 +39,7 @@ void KeypointEvaluation::add(const std::string& kind, const RigTruth& truth) {
   if (ssize(judged.keypoints) != truth.frames()) return;  // the second one of a pair has another truth
   for (size_t t = 0; t < judged.keypoints.size(); ++t) {
     judged.sc.push(judged.keypoints[t], truth.joints[t]);
+    judged.bright += (judged.keypoints[t].col(0).array() < kFarAway).count();
     judged.sc_joints.push(judged.joints[t], truth.joints[t]);
     ++judged.frames;
   }
@@ -56,6 +52,7 @@ Json KeypointEvaluation::summary() const {
       rows[kind] = {{"sc", judged.sc.value()},
                     {"sc_joints", judged.sc_joints.value()},
                     {"keypoints", judged.network->parents().size()},
+                    {"bright", judged.bright / static_cast<double>(judged.frames)},
                     {"frames", judged.frames}};
   return rows;
 }

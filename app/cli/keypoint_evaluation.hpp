@@ -21,7 +21,7 @@ class KeypointEvaluation {
   /// such finder.
   void add(const std::string& kind, const RigTruth& truth);
   /// By kinds: sc (paper 3, eq. 21) of the network's keypoints, sc_joints of the joints of the rigs found
-  /// with them, keypoints and frames. Null where nothing was noted.
+  /// with them, keypoints, how many of these are not faint on the mean, and frames. Null where nothing was noted.
   Json summary() const;
 
  private:
@@ -29,7 +29,7 @@ class KeypointEvaluation {
     std::shared_ptr<KeypointFinder> network;
     std::vector<Points> keypoints, joints;  // of the last sequence, a frame each
     SemanticConsistency sc, sc_joints;
-    int64_t frames = 0;
+    int64_t frames = 0, bright = 0;
   };
   std::map<std::string, Kind> kinds_;
 };

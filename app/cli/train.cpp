@@ -67,8 +67,16 @@ void add_kind(CLI::App& command, std::string& kind) {
       ->check(
           CLI::IsMember(std::vector<std::string>(nn::kMarionetteKinds.begin(), nn::kMarionetteKinds.end())));
 }
+/// For ablations.
+void add_losses(CLI::App& command, nn::MarionetteLosses& losses) {
+  command.add_flag("!--no-vol", losses.volume, "without L_vol, which spreads keypoints over the body");
+  command.add_flag("!--no-traj", losses.trajectory, "without L_traj: what goes alike hangs together");
+  command.add_flag("!--no-local", losses.local, "without L_local: what is near hangs together");
+  command.add_flag("!--no-time", losses.time, "without L_time: what stays as far apart hangs together");
+}
 void add_own(CLI::App& command, nn::MarionetteSlotsTrainOptions& options) {
   add_kind(command, options.kind);
+  add_losses(command, options.losses);
 }
 void add_own(CLI::App& command, nn::MarionettePaperTrainOptions& options) {
   add_kind(command, options.kind);
@@ -76,10 +84,7 @@ void add_own(CLI::App& command, nn::MarionettePaperTrainOptions& options) {
       ->check(CLI::Range(32, 128));
   command.add_option("--width", options.width, "channels of features: 32 (default) ... 128 (the paper's)")
       ->check(CLI::Range(16, 256));
-  command.add_flag("!--no-vol", options.volume, "without L_vol, which spreads keypoints over the body");
-  command.add_flag("!--no-traj", options.trajectory, "without L_traj: what goes alike hangs together");
-  command.add_flag("!--no-local", options.local, "without L_local: what is near hangs together");
-  command.add_flag("!--no-time", options.time, "without L_time: what stays as far apart hangs together");
+  add_losses(command, options.losses);
 }
 void add_own(CLI::App& command, nn::Pose2dTrainOptions& options) {
   command

@@ -113,21 +113,27 @@ struct PointsTrainOptions : TrainOptions {
 /// Kinds of bodies that paper 3's networks are trained on.
 constexpr std::array<const char*, 4> kMarionetteKinds = {"person", "quadruped", "hand", "arm"};
 
+/// Losses of paper 3 that may be left out, for its ablations.
+struct MarionetteLosses {
+  bool volume = true;              ///< L_vol
+  bool trajectory = true;          ///< L_traj
+  bool local = true, time = true;  ///< L_local, L_time
+};
+
 /// The network of slots: keypoints and tree of a kind, from scans alone.
 struct MarionetteSlotsTrainOptions : TrainOptions {
   static constexpr const char* kNetwork = "marionette-slots";
   std::string kind = "person";  ///< of kMarionetteKinds
+  MarionetteLosses losses;
 };
 
 /// Paper 3's own detector of keypoints; what is not the paper's choice is for its ablations.
 struct MarionettePaperTrainOptions : TrainOptions {
   static constexpr const char* kNetwork = "marionette-paper";
-  std::string kind = "person";     ///< of kMarionetteKinds
-  int grid = 32;                   ///< cells along an edge, a multiple of 32; the paper's 64
-  int width = 32;                  ///< channels of the features, a multiple of 16; the paper's 128
-  bool volume = true;              ///< L_vol
-  bool trajectory = true;          ///< L_traj
-  bool local = true, time = true;  ///< L_local, L_time
+  std::string kind = "person";  ///< of kMarionetteKinds
+  int grid = 32;                ///< cells along an edge, a multiple of 32; the paper's 64
+  int width = 32;               ///< channels of the features, a multiple of 16; the paper's 128
+  MarionetteLosses losses;
 };
 
 /// The dynamics of bodies of one kind. Where there is neither minutes nor samples, as many samples as the

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "retarget/base/error.hpp"
 #include "retarget/creature/creature.hpp"
@@ -63,6 +64,13 @@ RiggedMotion KindData::draw(int frames, double fps, Rng& rng) const {
   RiggedMotion drawn = people_ ? draw_person(frames, fps, rng) : draw_creature(frames, fps, rng);
   place_anywhere(drawn.motion, rng);
   return drawn;
+}
+
+double KindData::longest() const {
+  if (!people_) return std::numeric_limits<double>::infinity();
+  int most = 0;
+  for (const ClipRun& run : runs_) most = std::max(most, run.count);
+  return (most - 1) / static_cast<double>(kClipRate);
 }
 
 RiggedMotion KindData::draw_creature(int frames, double fps, Rng& rng) const {

@@ -23,6 +23,8 @@ class KindData {
   /// A body and what it performs, `frames` frames at `fps`, from anywhere in a motion. The body turns to any
   /// side and stands at the origin in its first frame.
   RiggedMotion draw(int frames, double fps, Rng& rng) const;
+  /// Seconds of the longest motion that can be drawn; creatures go on for ever.
+  double longest() const;
 
  private:
   RiggedMotion draw_creature(int frames, double fps, Rng& rng) const;

@@ -77,7 +77,8 @@ class SlotTrainer final : public TrainingRun {
     const auto there = few.index_select(0, t);
     LossSum loss;
     loss.add("warp", nearest_distance(moved, there) + nearest_distance(there, moved));
-    loss.add("vol", volume_fitting_loss(points, torch::ones({points.size(0), points.size(1)}), all.places));
+    loss.add("vol", volume_fitting_loss(points, torch::ones({points.size(0), points.size(1)}), all.places),
+             options_.losses.volume ? 1 : 0);
     loss.add("inside", nearest_distance(all.places, points), 0.1);
     const auto first = index.select(1, 0), turned = torch::arange(count, torch::kInt64) + count * kSlotWindow;
     const auto wanted = torch::matmul(all.places.index_select(0, first), batch.turned.transpose(1, 2));
@@ -106,12 +107,13 @@ class SlotTrainer final : public TrainingRun {
   }
 
   /// Paper 3's of what hangs together, with affinities that follow from how keypoints carry each other.
-  static void add_tree(const torch::Tensor& affinity, const torch::Tensor& places, double weight,
-                       LossSum& loss) {
+  void add_tree(const torch::Tensor& affinity, const torch::Tensor& places, double weight,
+                LossSum& loss) const {
+    const nn::MarionetteLosses& there = options_.losses;
     const auto intensity = torch::ones({places.size(0), places.size(1), places.size(2)});
-    loss.add("traj", trajectory_loss(places, affinity, intensity), weight);
-    loss.add("local", local_loss(places, affinity, intensity), 0.1 * weight);
-    loss.add("time", time_loss(places, affinity, intensity), weight);
+    loss.add("traj", trajectory_loss(places, affinity, intensity), there.trajectory ? weight : 0);
+    loss.add("local", local_loss(places, affinity, intensity), there.local ? 0.1 * weight : 0);
+    loss.add("time", time_loss(places, affinity, intensity), there.time ? weight : 0);
   }
 
   /// Where a body faces turns with it, hardly changes from frame to frame, and is mostly where it goes.

@@ -27,10 +27,12 @@ void put_centres(const std::vector<VoxelSet>& occupied, int grid, VoxelBatch& ba
 
 }  // namespace
 
-VoxelBatch VoxelData::batch(int windows, Rng& rng) const {
+VoxelBatch VoxelData::batch(int windows, int apart, Rng& rng) const {
   VoxelBatch batch;
+  const double most = std::min<double>(apart, longest_ * kVoxelRate / (kVoxelWindow - 1));
   for (int w = 0; w < windows; ++w) {
-    const RiggedMotion body = data_.draw(kVoxelWindow, kVoxelRate, rng);
+    const RiggedMotion body =
+        data_.draw(kVoxelWindow, kVoxelRate / (1 + rng.below(std::max(1, static_cast<int>(most)))), rng);
     const SkinnedPoints drawn = points_on(body.rig, kVoxelPoints, rng);
     std::vector<Points> frames, joints;
     for (const RigPose& pose : body.motion.poses) {

@@ -2,6 +2,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "retarget/base/file.hpp"
 #include "retarget/body/builtin_person.hpp"
 #include "retarget/formats/npz.hpp"
 #include "tests/app/cli_fixture.hpp"
@@ -214,6 +215,33 @@ TEST_F(Commands, TrainLearnsToReadLengthsOffPoses) {
   ASSERT_EQ(run.code, 0) << run.err;
   EXPECT_NE(run.err.find("true_ratios_odd"), std::string::npos) << run.err;  // what it is measured against
   EXPECT_LT(fs::file_size(out("proportions.weights")), 1u << 20);
+}
+
+TEST_F(Commands, TrainLeavesOutALossOfPaper3ByTheSameSwitchInBothNetworks) {
+  test::write_training_folder(scratch.path("data"));
+  const auto trained = [&](const std::vector<std::string>& more) {
+    const std::string file = out("trained.weights");
+    std::vector<std::string> words = {"train", more[0],   "--data", scratch.path("data"), "--out",
+                                      file,    "--batch", "1",      "--samples",          "3"};
+    words.insert(words.end(), more.begin() + 1, more.end());
+    const Finished run = run_program(words);
+    EXPECT_EQ(run.code, 0) << run.err;
+    const std::string bytes = read_file(file);
+    fs::remove(file), fs::remove(file + ".checkpoint"), fs::remove(file + ".csv");
+    return bytes.substr(bytes.size() - 10000);  // the header tells the seconds
+  };
+  for (const std::vector<std::string>& network :
+       {std::vector<std::string>{"marionette-slots"},
+        std::vector<std::string>{"marionette-paper", "--width", "16"}}) {
+    const std::string all = trained(network);
+    EXPECT_TRUE(all == trained(network)) << network[0] << ": one seed, one training";
+    for (const char* left_out : {"--no-vol", "--no-traj", "--no-local", "--no-time"}) {
+      std::vector<std::string> without = network;
+      without.push_back(left_out);
+      EXPECT_FALSE(all == trained(without)) << network[0] << " " << left_out;
+    }
+  }
+  EXPECT_EQ(run_program({"train", "marionette-slots", "--no-sep", "--data", "x", "--out", "y"}).code, 2);
 }
 
 TEST_F(Commands, TrainWantsData) {

@@ -9,7 +9,11 @@ namespace understudy::nn {
 namespace {
 
 constexpr double kLeak = 0.2;
-constexpr double kSharp = 10;         // of the decoder's answer
+constexpr double kSharp = 10;  // of the decoder's answer
+// Maps of each branch are leaky, as the authors' are, so that the floor of all K maps is one number. Without
+// that a keypoint that is sparse fades by powers, until one or two are left that are not faint.
+constexpr double kMapLeak = 0.01;
+constexpr double kMapFloor = -4;      // before softplus; from 0, means of maps leave the box's middle slowly
 constexpr double kAffinityPace = 10;  // affinities are learnt so much faster than weights
 
 torch::nn::Conv3d voxel_convolution(int64_t from, int64_t to, int64_t size, int64_t stride = 1) {
@@ -145,6 +149,7 @@ VoxelKeypointsNetImpl::VoxelKeypointsNetImpl(const VoxelKeypointsForm& form) : f
   line = torch::linspace(-1, 1, form.grid / 4);
   const torch::NoGradGuard no_grad;
   mix->weight.fill_(1);  // both branches, alike, where it begins
+  mix->bias.fill_(kMapFloor);
 }
 
 torch::Tensor VoxelKeypointsNetImpl::maps_over_time(const torch::Tensor& voxels) {
@@ -154,9 +159,9 @@ torch::Tensor VoxelKeypointsNetImpl::maps_over_time(const torch::Tensor& voxels)
 VoxelKeypoints VoxelKeypointsNetImpl::of_frames(const torch::Tensor& voxels, const torch::Tensor& over_time) {
   VoxelKeypoints found;
   found.features = features(voxels);
-  const auto both = torch::stack({maps(found.features), over_time}, 2);  // [F, K, 2, g, g, g]
-  const auto mixed = mix(both.flatten(0, 1));                            // [F K, 1, g, g, g]
-  found.heatmaps = torch::softplus(mixed).view_as(over_time);            // [F, K, g, g, g]
+  const auto both = torch::leaky_relu(torch::stack({maps(found.features), over_time}, 2), kMapLeak);
+  const auto mixed = mix(both.flatten(0, 1));                  // [F K, 2, g, g, g] -> [F K, 1, g, g, g]
+  found.heatmaps = torch::softplus(mixed).view_as(over_time);  // [F, K, g, g, g]
   const auto& m = found.heatmaps;
   const auto sum = m.sum({2, 3, 4}) + 1e-8;  // [F, K]
   const auto at = line.to(m.device());

@@ -11,7 +11,7 @@
 namespace understudy::nn {
 
 /// Version of the network's form.
-constexpr int kVoxelKeypointsVersion = 1;
+constexpr int kVoxelKeypointsVersion = 2;
 /// N of the paper: how many others a keypoint may be tied to.
 constexpr int64_t kAffinityMatrices = 2;
 

@@ -4,6 +4,8 @@
 
 #include <torch/torch.h>
 
+#include <algorithm>
+
 namespace understudy::training {
 
 /// L_vol, eq. 8: mean over frames of the mean over occupied cells of the squared distance to the nearest
@@ -24,6 +26,12 @@ inline torch::Tensor reconstruction_loss(const torch::Tensor& logits, const torc
 /// L_sparse, eq. 10: mean over frames and keypoints of the heatmap's mean, [F, K, g, g, g].
 inline torch::Tensor sparsity_loss(const torch::Tensor& heatmaps) {
   return heatmaps.abs().mean();
+}
+
+/// How much of its weight a loss has that is phased in while `done`, a share of the training, goes from
+/// `begins` to `grown`: 0 before, 1 after.
+inline double phased_in(double done, double begins, double grown) {
+  return std::clamp((done - begins) / (grown - begins), 0.0, 1.0);
 }
 
 /// L_sep, eq. 11, of W windows: places [W, T, K, 3]; sigma_s is 1250. Two keypoints that go the same way are

@@ -131,7 +131,7 @@ TEST(VoxelData, IsCentresOfOccupiedCellsAndJointsAmongThem) {
   const testing::DataFolder folder;
   const training::VoxelData data("person", folder.path(), training::Split::Dev, 32);
   Rng rng(1);
-  const training::VoxelBatch batch = data.batch(2, rng);
+  const training::VoxelBatch batch = data.batch(2, 6, rng);
   EXPECT_EQ(batch.voxels.sizes(), (torch::IntArrayRef{2, 10, 1, 32, 32, 32}));
   EXPECT_TRUE(torch::equal(batch.voxels.flatten(2).sum(2).flatten(), batch.counts.sum(1)));
   ASSERT_EQ(batch.joints.size(), 20u);
@@ -141,6 +141,35 @@ TEST(VoxelData, IsCentresOfOccupiedCellsAndJointsAmongThem) {
   EXPECT_EQ(batch.voxels[1][3][0][at[2].item<int64_t>()][at[1].item<int64_t>()][at[0].item<int64_t>()]
                 .item<float>(),
             1);
+}
+
+TEST(VoxelData, WindowsOfFramesFurtherApartHoldMoreMotion) {
+  const testing::DataFolder folder;
+  const training::VoxelData data("person", folder.path(), training::Split::Dev, 32);
+  const auto motion = [&](int apart) {
+    Rng rng(1);
+    const training::VoxelBatch batch = data.batch(12, apart, rng);
+    float sum = 0;  // how far joints are from the window's middle frame, in its box
+    for (size_t f = 0; f < batch.joints.size(); ++f)
+      sum += (batch.joints[f] - batch.joints[f / 10 * 10 + 5]).rowwise().norm().mean();
+    return sum;
+  };
+  EXPECT_GT(motion(5), 1.5f * motion(1));
+  EXPECT_EQ(motion(5), motion(500)) << "clips have two seconds";
+}
+
+TEST(VoxelKeypointsNet, AMapsFloorIsTheSameForAllKeypoints) {
+  torch::manual_seed(6);
+  const torch::NoGradGuard no_grad;
+  VoxelKeypointsNet net(small_form());
+  auto parameters = net->named_parameters();
+  for (const char* map : {"maps", "maps_of_time"}) {
+    parameters[std::string(map) + ".weight"].zero_();
+    parameters[std::string(map) + ".bias"].copy_(torch::tensor({-30.0f, -20.0f, -10.0f, 0.0f, 0.0f}));
+  }
+  const auto found = net->forward(moving_block(1)).intensity[0];
+  EXPECT_GT(found.min().item<float>(), 0.5f) << "one that says no everywhere is as faint as the others";
+  EXPECT_GT(net->forward(moving_block(1)).heatmaps.min().item<float>(), 0);
 }
 
 class PaperKeypoints : public ::testing::Test {
@@ -246,8 +275,8 @@ TEST_F(PaperKeypoints, TrainingGoesOnWhereItStoppedAndItsWeightsAreLoaded) {
 TEST_F(PaperKeypoints, ALossThatIsLeftOutPullsNothing) {
   const auto trained = [&](const char* name, bool volume, bool affinities) {
     auto how = options(name, 3);
-    how.volume = volume;
-    how.trajectory = how.local = how.time = affinities;
+    how.losses.volume = volume;
+    how.losses.trajectory = how.losses.local = how.losses.time = affinities;
     EXPECT_EQ(training::train(how), 0);
     VoxelKeypointsForm form = small_form();
     form.keypoints = 24;

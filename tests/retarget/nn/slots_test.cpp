@@ -14,6 +14,7 @@
 #include "retarget/nn/load.hpp"
 #include "retarget/nn/modules/affinity.hpp"
 #include "retarget/nn/modules/slot_net.hpp"
+#include "retarget/nn/weights_file.hpp"
 #include "retarget/training/losses/keypoint_losses.hpp"
 #include "retarget/training/losses/slot_losses.hpp"
 #include "retarget/training/slot_data.hpp"
@@ -185,6 +186,26 @@ TEST_F(SlotTraining, WritesWeightsThatFindTheSameKeypointsInEveryScan) {
   holes.faces.resize(0, 3);
   holes.vertices.topRows(20).setConstant(std::nanf(""));
   EXPECT_TRUE(finder->find({holes})[0].places.allFinite());
+}
+
+TEST_F(SlotTraining, ALossThatIsLeftOutPullsNothing) {
+  const auto trained = [&](const char* name, const nn::MarionetteLosses& losses) {
+    nn::MarionetteSlotsTrainOptions how = options();
+    how.out = path(name);
+    how.losses = losses;
+    EXPECT_EQ(training::train(how), 0);
+    nn::SlotNet net(12);
+    nn::load_weights(how.out, "marionette-slots", nn::kSlotVersion, *net);
+    return net->named_parameters()["slot_head.0.weight"].clone();
+  };
+  nn::MarionetteLosses no_volume, no_trajectory, no_local, no_time;
+  no_volume.volume = no_trajectory.trajectory = no_local.local = no_time.time = false;
+  const auto all = trained("all.weights", {});
+  EXPECT_TRUE(torch::equal(all, trained("again.weights", {}))) << "one seed, one training";
+  EXPECT_FALSE(torch::equal(all, trained("no_volume.weights", no_volume)));
+  EXPECT_FALSE(torch::equal(all, trained("no_trajectory.weights", no_trajectory)));
+  EXPECT_FALSE(torch::equal(all, trained("no_local.weights", no_local)));
+  EXPECT_FALSE(torch::equal(all, trained("no_time.weights", no_time)));
 }
 
 TEST_F(SlotTraining, RefusesAnotherKindAndOthersWeights) {

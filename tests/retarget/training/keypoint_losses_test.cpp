@@ -53,6 +53,14 @@ TEST(KeypointLosses, SparsityIsTheMeanOfTheMaps) {
   EXPECT_NEAR(value(sparsity_loss(maps)), 6.0 / 8, 1e-6);
 }
 
+TEST(KeypointLosses, WhatIsPhasedInGrowsEvenlyInItsShareOfTheTraining) {
+  EXPECT_EQ(phased_in(0, 0.2, 0.6), 0);
+  EXPECT_EQ(phased_in(0.2, 0.2, 0.6), 0);
+  EXPECT_NEAR(phased_in(0.3, 0.2, 0.6), 0.25, 1e-12);
+  EXPECT_EQ(phased_in(0.6, 0.2, 0.6), 1);
+  EXPECT_EQ(phased_in(1, 0.2, 0.6), 1);
+}
+
 TEST(KeypointLosses, SeparationSeesWaysNotPlaces) {
   // The same way, a metre apart: exp(0) for both pairs.
   EXPECT_NEAR(value(separation_loss(along_x({{0, 1}, {0.02f, 1.02f}}))), 1, 1e-5);
