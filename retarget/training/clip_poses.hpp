@@ -11,11 +11,6 @@ namespace understudy::training {
 
 constexpr float kClipRate = 30;  ///< frames/s of the clips
 
-/// Whether a joint is of the trunk, the arms or the head, which may do what they do in another clip.
-inline bool is_upper_body(int joint) {
-  return joint == Spine1 || joint == Spine2 || joint == Spine3 || joint >= Neck;
-}
-
 class ClipPoses {
  public:
   explicit ClipPoses(const std::vector<Clip>& clips);

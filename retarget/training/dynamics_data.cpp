@@ -5,8 +5,6 @@
 
 #include "retarget/base/index.hpp"
 #include "retarget/marionette/dynamics_rows.hpp"
-#include "retarget/math/directions.hpp"
-#include "retarget/math/rotation.hpp"
 #include "retarget/rig/person_rig.hpp"
 
 namespace understudy::training {
@@ -19,8 +17,6 @@ constexpr int kDrawnEachBatch = 3;
 constexpr int kMostGiven = 10, kLeastApart = 2;
 constexpr double kMostApart = 1.05;                      // seconds
 constexpr float kOneGiven = 0.7f, kEvenlyApart = 0.75f;  // shares
-constexpr float kBorrowed = 0.4f;                        // share of people whose upper bodies are others'
-constexpr float kTurned = 0.05f;                         // radians
 constexpr float kSlower = 0.85f, kQuicker = 1.2f;        // people, than they were captured
 
 /// Seen in a mirror that x = 0 is.
@@ -30,21 +26,6 @@ void mirror_person(RigMotion& motion) {
     seen.root = pose.root;
     std::copy(pose.turns.begin(), pose.turns.end(), seen.local.begin());
     pose = person_pose(mirrored(seen));
-  }
-}
-
-/// Trunk, arms and head do what they do in another clip.
-void borrow_upper_body(const RigMotion& other, RigMotion& motion) {
-  for (size_t t = 0; t < motion.poses.size(); ++t)
-    for (int j = 0; j < kJointCount; ++j)
-      if (is_upper_body(j)) motion.poses[t].turns[j] = other.poses[t].turns[j];
-}
-
-/// All joints but the root, each a little and always alike.
-void turn_joints(RigMotion& motion, Rng& rng) {
-  for (size_t j = 1; j < motion.poses.front().turns.size(); ++j) {
-    const Mat3 turn = rotation_from_axis_angle(rng.uniform(0, kTurned) * random_direction(rng));
-    for (RigPose& pose : motion.poses) pose.turns[j] = pose.turns[j] * turn;
   }
 }
 
@@ -77,9 +58,6 @@ void DynamicsData::draw_more(int frames, Rng& rng) {
   const double tempo = people_ ? static_cast<double>(rng.uniform(kSlower, kQuicker)) : 1;
   RiggedMotion drawn = kinds_.draw(std::max(frames, count), fps / tempo, rng);
   drawn.motion.fps = fps;
-  if (people_ && rng.chance(kBorrowed))
-    borrow_upper_body(kinds_.draw(std::max(frames, count), fps / tempo, rng).motion, drawn.motion);
-  if (people_) turn_joints(drawn.motion, rng);
   if (people_ && rng.chance(0.5f)) mirror_person(drawn.motion);
   const DynamicsRows rows(drawn.rig);
   Drawn one{rows.rows(drawn.motion), rows.rest(), fps};

@@ -39,7 +39,7 @@ class DynamicsTrainer final : public TrainingRun {
     average_->eval();
     own(net_.ptr(), average_.ptr(),
         std::make_unique<torch::optim::AdamW>(net_->parameters(),
-                                              torch::optim::AdamWOptions(1e-3).weight_decay(1e-2)));
+                                              torch::optim::AdamWOptions(1e-3).weight_decay(1e-4)));
   }
 
  private:

@@ -16,7 +16,7 @@ constexpr int kVoxelBatch = 1;
 constexpr int kMostApart = 6;  // frames between two of a window: from a third of a second to two seconds
 // L_sparse grows to its weight between these shares of the training: from the start, all keypoints but a few
 // are faint before they have left the middle of the box.
-constexpr double kSparseBegins = 0.3, kSparseGrown = 0.8;
+constexpr double kSparseBegins = 0.1, kSparseGrown = 0.5;
 constexpr int kVoxelFigureWindows = 12, kDecodedWindows = 3;
 constexpr uint64_t kVoxelFigureSeed = 78;
 

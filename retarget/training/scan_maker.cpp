@@ -11,7 +11,6 @@
 #include "retarget/body/surroundings.hpp"
 #include "retarget/math/directions.hpp"
 #include "retarget/math/rotation.hpp"
-#include "retarget/training/clip_poses.hpp"
 
 namespace understudy::training {
 namespace {
@@ -62,6 +61,10 @@ void sometimes(float share, Rng rng, Change&& change) {
 
 Mat3 random_turn(float angle, Rng& rng) {
   return rotation_from_axis_angle(angle * random_direction(rng));
+}
+
+bool is_upper(int joint) {
+  return joint == Spine1 || joint == Spine2 || joint == Spine3 || joint >= Neck;
 }
 
 /// Exactly kScanPoints of the points, at random, repeating some where there are too few.
@@ -134,7 +137,7 @@ std::vector<Pose> ScanMaker::mixed_poses(int count) {
   poses.resize(std::min(poses.size(), others.size()));
   for (size_t i = 0; i < poses.size(); ++i)
     for (int j = 0; j < kJointCount; ++j)
-      if (is_upper_body(j)) poses[i].local[j] = others[i].local[j];
+      if (is_upper(j)) poses[i].local[j] = others[i].local[j];
   return poses;
 }
 

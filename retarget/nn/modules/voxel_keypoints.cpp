@@ -13,7 +13,7 @@ constexpr double kSharp = 10;  // of the decoder's answer
 // Maps of each branch are leaky, as the authors' are, so that the floor of all K maps is one number. Without
 // that a keypoint that is sparse fades by powers, until one or two are left that are not faint.
 constexpr double kMapLeak = 0.01;
-constexpr double kMapFloor = -4;      // before softplus; from 0, means of maps leave the box's middle slowly
+constexpr double kMapFloor = -5;      // before softplus; from 0, means of maps leave the box's middle slowly
 constexpr double kAffinityPace = 10;  // affinities are learnt so much faster than weights
 
 torch::nn::Conv3d voxel_convolution(int64_t from, int64_t to, int64_t size, int64_t stride = 1) {
