@@ -110,19 +110,16 @@ struct PointsTrainOptions : TrainOptions {
   static constexpr const char* kNetwork = "points";
 };
 
-/// Kinds of bodies that paper 3's networks are trained on.
-constexpr std::array<const char*, 4> kMarionetteKinds = {"person", "quadruped", "hand", "arm"};
-
 /// The network of slots: keypoints and tree of a kind, from scans alone.
 struct MarionetteSlotsTrainOptions : TrainOptions {
   static constexpr const char* kNetwork = "marionette-slots";
-  std::string kind = "person";  ///< of kMarionetteKinds
+  std::string kind = "person";  ///< of kBodyKinds
 };
 
 /// Paper 3's own detector of keypoints; what is not the paper's choice is for its ablations.
 struct MarionettePaperTrainOptions : TrainOptions {
   static constexpr const char* kNetwork = "marionette-paper";
-  std::string kind = "person";     ///< of kMarionetteKinds
+  std::string kind = "person";     ///< of kBodyKinds
   int grid = 32;                   ///< cells along an edge, a multiple of 32; the paper's 64
   int width = 32;                  ///< channels of the features, a multiple of 16; the paper's 128
   bool volume = true;              ///< L_vol
@@ -134,7 +131,7 @@ struct MarionettePaperTrainOptions : TrainOptions {
 /// shipped weights saw.
 struct MarionetteDynamicsTrainOptions : TrainOptions {
   static constexpr const char* kNetwork = "marionette-dynamics";
-  std::string kind = "person";     ///< one of kMarionetteKinds
+  std::string kind = "person";     ///< one of kBodyKinds
   std::string form = "rotations";  ///< or "positions", the paper's baseline
 };
 
