@@ -9,6 +9,8 @@
 #include "app/cli/preview.hpp"
 #include "app/cli/progress.hpp"
 #include "app/cli/rig_moment.hpp"
+#include "app/cli/studio.hpp"
+#include "app/run/bone_search.hpp"
 #include "app/run/exports.hpp"
 #include "app/run/interrupt.hpp"
 #include "app/run/rig_finder.hpp"
@@ -21,7 +23,6 @@
 #include "retarget/discovery/rig_figures.hpp"
 #include "retarget/formats/file_formats.hpp"
 #include "retarget/math/percentile.hpp"
-#include "retarget/networks/networks.hpp"
 #include "retarget/pipeline/method_table.hpp"
 
 namespace understudy::app {
@@ -31,8 +32,8 @@ struct DiscoverOptions {
   SourceOptions source;
   std::string out, result, report, preview;
   std::string rig, perform, matches;
-  int parts = 0;
-  std::string method = rig_methods().front().name, kind, weights;
+  BoneSearch search;
+  std::string weights;
 };
 
 void check_outputs(const DiscoverOptions& options) {
@@ -60,23 +61,18 @@ void check_task(const DiscoverOptions& options) {
 }
 
 void check_method(const DiscoverOptions& options) {
-  const bool is_network = rig_method_named(options.method).weights != nullptr;
-  US_CHECK(is_network || (options.kind.empty() && options.weights.empty()), "--kind and --weights are of --",
+  const BoneSearch& search = options.search;
+  const bool is_network = rig_method_named(search.method).weights != nullptr;
+  US_CHECK(is_network || (search.kind.empty() && options.weights.empty()), "--kind and --weights are of --",
            "method slots");
-  US_CHECK(!is_network || !options.kind.empty(), "--method ", options.method,
-           " knows some kinds of bodies: name the one that moves (--kind)");
-  US_CHECK(!is_network || options.parts == 0, "--method ", options.method,
+  const std::string wrong = failure_of([&] { check_search(search); });
+  US_CHECK(wrong.empty(), "--kind: ", wrong);
+  US_CHECK(!is_network || search.most == 0, "--method ", search.method,
            " finds as many bones as its kind has: --parts does not apply");
 }
 
 DiscoveryOptions discovery_options(const DiscoverOptions& options, Progress& progress) {
-  DiscoveryOptions how;
-  how.parts = options.parts;
-  if (rig_method_named(options.method).weights) {
-    nn::NetworkOptions networks;
-    networks.weights = options.weights;
-    how.keypoints = nn::load_keypoint_finder(nn::weights_folder(networks), options.method, options.kind);
-  }
+  DiscoveryOptions how = discovery_options(options.search, keypoints_loader(options.weights));
   how.progress = [&progress](const DiscoveryProgress& at) {
     progress.step(static_cast<int64_t>(100 * at.share));
     return !interrupted();
@@ -266,13 +262,14 @@ Action declare_discover(CLI::App& command) {
   command.add_option("--out", options->out,
                      "the thing with bones, skin and animation, as .glb or .gltf; its motion alone as .bvh");
   command
-      .add_option("--parts", options->parts, "at most so many bones (default: as many as its motion shows)")
-      ->check(CLI::Range(1, 300));
+      .add_option("--parts", options->search.most,
+                  "at most so many bones (default: as many as its motion shows)")
+      ->check(CLI::Range(1, kMostBones));
   command
-      .add_option("--method", options->method,
+      .add_option("--method", options->search.method,
                   help_of(rig_methods()) + " (default: " + rig_methods().front().name + ")")
       ->check([](const std::string& name) { return failure_of([&] { rig_method_named(name); }); });
-  command.add_option("--kind", options->kind, "of --method slots: person, quadruped, hand or arm");
+  command.add_option("--kind", options->search.kind, "of --method slots: person, quadruped, hand or arm");
   command.add_option("--weights", options->weights, "folder of trained weights");
   command.add_option("--result", options->result, "vertices, joints, tree and weights as .npz");
   command.add_option("--report", options->report, "bones, and how well each frame fits, as JSON");

@@ -23,6 +23,14 @@ std::function<std::shared_ptr<MotionCoder>()> coder_loader(const std::string& we
   };
 }
 
+KeypointsLoader keypoints_loader(const std::string& weights) {
+  return [weights](const std::string& method, const std::string& kind) {
+    nn::NetworkOptions options;
+    options.weights = weights;
+    return nn::load_keypoint_finder(nn::weights_folder(options), method, kind);
+  };
+}
+
 StudioServices studio_services(const std::string& weights) {
   StudioServices services;
   services.motion_coder = coder_loader(weights);
@@ -39,6 +47,7 @@ StudioServices studio_services(const std::string& weights) {
     options.weights = weights;
     return nn::load_lifter(nn::weights_folder(options));
   };
+  services.keypoints = keypoints_loader(weights);
   services.dynamics = [weights](const understudy::Rig& rig) {
     nn::NetworkOptions options;
     options.weights = weights;

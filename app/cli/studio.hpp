@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "app/run/bone_search.hpp"
 #include "app/session/studio.hpp"
 #include "render/context/context.hpp"
 
@@ -13,6 +14,8 @@ namespace understudy::app {
 StudioServices studio_services(const std::string& weights);
 /// Loads what codes movements, with the weights in that folder.
 std::function<std::shared_ptr<MotionCoder>()> coder_loader(const std::string& weights);
+/// Loads what finds the keypoints of a kind of bodies, with the weights in that folder.
+KeypointsLoader keypoints_loader(const std::string& weights);
 /// By its name on the command line: any, egl, osmesa, null.
 render::ContextKind context_kind(const std::string& name);
 

@@ -10,6 +10,7 @@
 #include "retarget/base/text.hpp"
 #include "retarget/networks/networks.hpp"
 #include "retarget/networks/train_options.hpp"
+#include "retarget/pipeline/keypoint_finder.hpp"
 #include "retarget/pipeline/method_table.hpp"
 
 namespace understudy::app {
@@ -64,8 +65,7 @@ void add_own(CLI::App&, nn::PointsTrainOptions&) {}
 /// Whose keypoints or motions.
 void add_kind(CLI::App& command, std::string& kind) {
   command.add_option("--kind", kind, "person, quadruped, hand or arm (default: person)")
-      ->check(
-          CLI::IsMember(std::vector<std::string>(nn::kMarionetteKinds.begin(), nn::kMarionetteKinds.end())));
+      ->check(CLI::IsMember(std::vector<std::string>(kBodyKinds.begin(), kBodyKinds.end())));
 }
 /// For ablations.
 void add_losses(CLI::App& command, nn::MarionetteLosses& losses) {

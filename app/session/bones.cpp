@@ -20,7 +20,8 @@ struct BonesJob {
   ScanEdits edits;
   SharedFrames<KeptSource> kept;
   std::shared_ptr<MotionBlender> blender;
-  int most = 0;
+  BoneSearch search;
+  KeypointsLoader load;
   std::shared_ptr<const DiscoveredRig> from;  // to be edited further; null: nothing is found yet
   std::vector<RigEdit> further;
   std::string from_key, key;  // of `from`, and of the answer
@@ -55,8 +56,7 @@ ScanSequence scans_of(const BonesJob& work) {
 }
 
 void find(BonesJob& work, const ScanSequence& scans, JobControl& control) {
-  DiscoveryOptions how;
-  how.parts = work.most;
+  DiscoveryOptions how = discovery_options(work.search, work.load);
   how.parts_found = [&work](PartsSoFar so_far) {
     const std::lock_guard lock(work.mutex);
     work.so_far = std::make_shared<const PartsSoFar>(std::move(so_far));
@@ -199,7 +199,7 @@ void keep_rig(Rigs& rigs, const std::string& key, const std::shared_ptr<const Di
 std::string bones_key(const OwnBones& bones, const std::string& source_key, size_t edits) {
   if (!bones.wanted || source_key.empty()) return "";
   const std::vector<RigEdit> first(bones.edits.begin(), bones.edits.begin() + static_cast<ptrdiff_t>(edits));
-  return key_of(source_key, bones.most, first);
+  return key_of(source_key, bones.search, first);
 }
 
 /// A match is of the bone, whatever it is called.
@@ -258,7 +258,8 @@ void Studio::start_finding_bones() {
   work->blender = blender_;
   work->edits = in_effect(session_.document.scan_edits);
   work->kept = session_.source.frames;
-  work->most = wanted.most;
+  work->search = wanted.search;
+  work->load = services_.keypoints;
   size_t done = wanted.edits.size() + 1;
   while (!work->from && done-- > 0)
     work->from = kept_rig(b.rigs, work->from_key = bones_key(wanted, b.source_key, done));

@@ -17,6 +17,33 @@ void show_panel(Studio& studio) {
   if (studio.commands().find("panel.show") != nullptr) studio.run("panel.show", {"bones", "on"});
 }
 
+int most_bones(const Call& c) {
+  if (c.arguments[0] == "auto") return 0;
+  const int most = c.number<int>(0, "number of bones");
+  US_CHECK(most >= 1 && most <= kMostBones, "a number of bones is 1 to ", kMostBones, ", not ", most);
+  return most;
+}
+
+std::vector<std::string> body_kinds() {
+  return {kBodyKinds.begin(), kBodyKinds.end()};
+}
+
+/// How bones are to be looked for; what the words do not say stays as it is.
+BoneSearch asked_search(const Call& c) {
+  BoneSearch search = c.document.bones.search;
+  if (c.arguments.empty()) return search;
+  const std::string& word = c.arguments[0];
+  double number = 0;
+  const bool is_method = word != "auto" && !parse_number(word, number);
+  search.method = (is_method ? rig_method_named(word) : rig_methods().front()).name;
+  if (!is_method) search.most = most_bones(c);
+  if (c.arguments.size() < 2) return check_search(search), search;
+  US_CHECK(is_method && rig_method_named(word).weights, "'", word, "' is for bodies of any kind, not of a ",
+           c.arguments[1], " alone");
+  search.kind = c.one_of(1, "kind", body_kinds());
+  return search;
+}
+
 void find_bones(Call& c) {
   const SourceOptions& source = c.document.source;
   US_CHECK(!source.path.empty(), "no scans are open whose bones could be found");
@@ -25,16 +52,10 @@ void find_bones(Call& c) {
       name_of(source), ": has bones already; they are found in scans");
   OwnBones bones;
   bones.wanted = true;
-  bones.most = c.document.bones.most;
+  bones.search = asked_search(c);
   bones.second.path = c.document.bones.second.path;
-  if (!c.arguments.empty() && c.arguments[0] == "auto") bones.most = 0;
-  if (!c.arguments.empty() && c.arguments[0] != "auto") {
-    bones.most = c.number<int>(0, "number of bones");
-    US_CHECK(bones.most >= 1 && bones.most <= kMostBones, "a number of bones is 1 to ", kMostBones, ", not ",
-             bones.most);
-  }
   const OwnBones& now = c.document.bones;
-  if (now.wanted && now.most == bones.most && now.edits.empty())
+  if (now.wanted && same(now.search, bones.search) && now.edits.empty())
     c.studio.look_for_bones_again();
   else
     c.document.bones = std::move(bones);
@@ -79,7 +100,10 @@ void export_found(Call& c) {
 
 void add_finding(Commands& commands) {
   commands.add_edit({"bones.find", "Find its own skeleton",
-                     "[MOST|auto]: so many bones at most; auto, as many as the motion shows"},
+                     "[MOST|auto|" + names_of(rig_methods(), "|") +
+                         " KIND]: by parts so many bones at most, auto as many as the motion shows; by the "
+                         "others those of a KIND: " +
+                         joined_once(body_kinds())},
                     find_bones);
   commands.add_edit({"bones.drop", "Drop the found skeleton"}, [](Call& c) {
     US_CHECK(c.document.bones.wanted, "there is no found skeleton");

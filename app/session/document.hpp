@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "app/run/bone_search.hpp"
 #include "app/run/method.hpp"
 #include "app/run/motion_generator.hpp"
 #include "app/run/source.hpp"
@@ -61,8 +62,6 @@ FieldsOf<S, Take> fields(V& visit, S& take) {
   visit("flat", take.flat);
 }
 
-constexpr int kMostBones = 300;  ///< that may be asked for
-
 /// Another body of the kind that performs what was found, as a recipe.
 struct SecondBody {
   std::string path;  ///< a rig that was found before, one scan, or a folder of scans; empty: there is none
@@ -91,7 +90,7 @@ constexpr const char* kFoundClip = "motion";
 /// The skeleton of its own that is found in the source's scans, as a recipe: the same is found again.
 struct OwnBones {
   bool wanted = false;
-  int most = 0;                ///< bones at most; 0: as many as the motion shows
+  BoneSearch search;
   std::vector<RigEdit> edits;  ///< of what is found, one after the other
   SecondBody second{};
   std::vector<MadeClip> clips{};  ///< that were kept of those made
@@ -99,7 +98,7 @@ struct OwnBones {
 template <class V, class S>
 FieldsOf<S, OwnBones> fields(V& visit, S& bones) {
   visit("wanted", bones.wanted);
-  visit("most", bones.most, Within<int>{0, kMostBones});
+  fields(visit, bones.search);
   visit("edits", bones.edits);
   visit("second", bones.second);
   visit("clips", bones.clips);

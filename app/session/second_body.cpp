@@ -17,7 +17,8 @@ struct SecondBodyJob {
   SecondBody wanted;
   std::shared_ptr<const GeneratedMotion> clip;  // null: what was found
   SourceOptions like;
-  int most = 0;
+  BoneSearch search;  // as of the first one
+  KeypointsLoader load;
   std::shared_ptr<const OtherBody> known_body;   // null: it is still to be read
   std::shared_ptr<const LaidOther> known_other;  // null: still to be laid on the first one
 
@@ -34,7 +35,7 @@ struct SecondBodyJob {
   bool cancelled = false;
 
   bool reads_as(const SecondBodyJob& o) const {
-    return wanted.path == o.wanted.path && most == o.most && same(like, o.like);
+    return wanted.path == o.wanted.path && same(search, o.search) && same(like, o.like);
   }
 };
 
@@ -51,8 +52,7 @@ void begin_stage(SecondBodyJob& work, JobControl& control, const char* stage, fl
 
 OtherBody read_body(SecondBodyJob& work, JobControl& control) {
   constexpr float kShare = 0.7f;  // of all
-  DiscoveryOptions how;
-  how.parts = work.most;
+  DiscoveryOptions how = discovery_options(work.search, work.load);
   how.progress = [&](const DiscoveryProgress& at) {
     control.progress(kShare * at.share);
     const std::lock_guard lock(work.mutex);
@@ -137,7 +137,7 @@ void Studio::follow_second_body() {
   const auto clip = performed_clip(session_);
   if (!bones.second.clip.empty() && !clip) return wait_for_clip();
   const bool is_last = last && last->clip == clip && last->first == session_.bones.rig &&
-                       last->most == bones.most && same(last->wanted, bones.second) &&
+                       same(last->search, bones.search) && same(last->wanted, bones.second) &&
                        same(last->like, read_like(session_));
   if (!is_last) {
     if (!session_.working) start_second_body();  // how the source is read is known
@@ -174,7 +174,8 @@ void Studio::start_second_body() {
   work->wanted = session_.document.bones.second;
   work->clip = performed_clip(session_);
   work->like = read_like(session_);
-  work->most = session_.document.bones.most;
+  work->search = session_.document.bones.search;
+  work->load = services_.keypoints;
   if (state.job != 0) jobs_.cancel(state.job);
   const bool is_read = last && last->reads_as(*work);
   if (is_read) work->known_body = last->ended ? last->body : last->known_body;

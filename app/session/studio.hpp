@@ -30,6 +30,7 @@ struct StudioServices {
   /// what reads proportions off 2D poses; called off the UI thread, once
   std::function<std::shared_ptr<const LengthReader>()> lengths;
   FlatEngineMaker flat_engine;           ///< as FlatTools have it; called off the UI thread
+  KeypointsLoader keypoints;             ///< of a kind of bodies; called off the UI thread
   DynamicsLoader dynamics;               ///< of how bodies of a kind move; called off the UI thread
   std::function<std::string()> weights;  ///< checksums, for documents; called off the UI thread
   std::string samples;                   ///< folder of the bundled samples; empty: none

@@ -97,6 +97,15 @@ std::string goes_on(const Session& session) {
   return on ? printed("%.3g", static_cast<double>(take->pose_edits.go_on->seconds)) : "";
 }
 
+/// Found bones that have a network's keypoint's name.
+std::string keypoints(const Session& session) {
+  if (!session.bones.rig) return "0";
+  const std::vector<RigJoint>& joints = session.bones.rig->found.rig.joints;
+  return std::to_string(std::count_if(joints.begin(), joints.end(), [](const RigJoint& joint) {
+    return starts_with(joint.name, "keypoint ");
+  }));
+}
+
 /// Of the chosen found bone in the frame shown, whole degrees against its parent; "none" without one.
 std::string bone_turn(const Session& session) {
   const auto& rig = session.bones.rig;
@@ -165,6 +174,8 @@ std::vector<std::pair<std::string, std::string>> facts(const Session& session) {
       {"source", session.document.source.path},
       {"bones", std::to_string(session.bones.rig ? session.bones.rig->found.rig.count() : 0)},
       {"bone", std::to_string(session.bones.selected)},
+      {"keypoints", keypoints(session)},
+      {"bones_method", session.document.bones.search.method},
       {"bone_turn", bone_turn(session)},
       {"bone_weights", bone_weights(session)},
       {"second_bones", second_bones(session)},

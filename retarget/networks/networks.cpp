@@ -218,9 +218,8 @@ std::unique_ptr<KeypointFinder> load_keypoint_finder(const std::string& folder, 
                                                      const std::string& kind) {
   const MethodChoice& choice = rig_method_named(method);
   US_CHECK(choice.weights, "'", method, "' looks at the scans alone: there is no network of it");
-  US_CHECK(std::find(kMarionetteKinds.begin(), kMarionetteKinds.end(), kind) != kMarionetteKinds.end(), "'",
-           method, "' knows the kinds ", joined_once({kMarionetteKinds.begin(), kMarionetteKinds.end()}),
-           ", not '", kind, "'");
+  US_CHECK(std::find(kBodyKinds.begin(), kBodyKinds.end(), kind) != kBodyKinds.end(), "'", method,
+           "' knows the kinds ", joined_once({kBodyKinds.begin(), kBodyKinds.end()}), ", not '", kind, "'");
   return plugin().load_keypoints(folder + "/" + choice.weights + "_" + kind + ".weights", method);
 }
 
@@ -251,8 +250,7 @@ std::unique_ptr<MotionDynamics> load_motion_dynamics(const std::string& place, c
   std::vector<std::string> files = {place};
   if (fs::is_directory(place)) {
     files.clear();
-    for (const char* kind : kMarionetteKinds)
-      files.push_back(place + "/marionette_dynamics_" + kind + ".weights");
+    for (const char* kind : kBodyKinds) files.push_back(place + "/marionette_dynamics_" + kind + ".weights");
   }
   std::string kinds;
   for (const std::string& file : files) {

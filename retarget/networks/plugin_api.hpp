@@ -8,7 +8,7 @@
 
 namespace understudy::nn {
 
-constexpr int kPluginVersion = 17;
+constexpr int kPluginVersion = 18;
 
 struct PluginApi {
   int version;

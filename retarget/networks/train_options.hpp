@@ -110,9 +110,6 @@ struct PointsTrainOptions : TrainOptions {
   static constexpr const char* kNetwork = "points";
 };
 
-/// Kinds of bodies that paper 3's networks are trained on.
-constexpr std::array<const char*, 4> kMarionetteKinds = {"person", "quadruped", "hand", "arm"};
-
 /// Losses of paper 3 that may be left out, for its ablations.
 struct MarionetteLosses {
   bool volume = true;              ///< L_vol
@@ -123,14 +120,14 @@ struct MarionetteLosses {
 /// The network of slots: keypoints and tree of a kind, from scans alone.
 struct MarionetteSlotsTrainOptions : TrainOptions {
   static constexpr const char* kNetwork = "marionette-slots";
-  std::string kind = "person";  ///< of kMarionetteKinds
+  std::string kind = "person";  ///< of kBodyKinds
   MarionetteLosses losses;
 };
 
 /// Paper 3's own detector of keypoints; what is not the paper's choice is for its ablations.
 struct MarionettePaperTrainOptions : TrainOptions {
   static constexpr const char* kNetwork = "marionette-paper";
-  std::string kind = "person";  ///< of kMarionetteKinds
+  std::string kind = "person";  ///< of kBodyKinds
   int grid = 32;                ///< cells along an edge, a multiple of 32; the paper's 64
   int width = 32;               ///< channels of the features, a multiple of 16; the paper's 128
   MarionetteLosses losses;
@@ -140,7 +137,7 @@ struct MarionettePaperTrainOptions : TrainOptions {
 /// shipped weights saw.
 struct MarionetteDynamicsTrainOptions : TrainOptions {
   static constexpr const char* kNetwork = "marionette-dynamics";
-  std::string kind = "person";     ///< one of kMarionetteKinds
+  std::string kind = "person";     ///< one of kBodyKinds
   std::string form = "rotations";  ///< or "positions", the paper's baseline
 };
 

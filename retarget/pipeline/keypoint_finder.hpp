@@ -2,12 +2,16 @@
 // no user of it needs LibTorch.
 #pragma once
 
+#include <array>
 #include <string>
 #include <vector>
 
 #include "retarget/geometry/mesh.hpp"
 
 namespace understudy {
+
+/// Kinds of bodies whose keypoints networks know.
+constexpr std::array<const char*, 4> kBodyKinds = {"person", "quadruped", "hand", "arm"};
 
 /// The keypoints of one scan, world, metres.
 struct FoundKeypoints {
@@ -29,7 +33,7 @@ class KeypointFinder {
   virtual std::vector<FoundKeypoints> find(const std::vector<Mesh>& scans) = 0;
   /// [K] of the tree; -1: the root. A parent need not come before its children.
   virtual const std::vector<int>& parents() const = 0;
-  /// "person", "quadruped", "hand" or "arm".
+  /// One of kBodyKinds.
   virtual const std::string& kind() const = 0;
   /// "slots" or "paper".
   virtual std::string name() const = 0;

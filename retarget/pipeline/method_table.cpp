@@ -55,16 +55,16 @@ const MethodChoices& extractors() {
 
 const MethodChoices& rig_methods() {
   static const MethodChoices all = {
-      {"parts", "Parts", "rigid parts", "parts that move as one in the scans themselves, and their joints",
-       nullptr},
+      {"parts", "Parts", "rigid parts",
+       "what moves as one in the scans becomes a bone, in anything that moves enough", nullptr},
       {"slots", "Slots", "a kind's keypoints",
-       "the keypoints and the tree that a network of this kind of body finds in every scan of it, with "
-       "weights of one's own (train marionette-slots)",
+       "a network's keypoints become bones, the same in every body of a kind that it knows, and one scan is "
+       "enough",
        "marionette_slots"},
       {"paper", "Paper (small)", "paper 3's keypoints, trained small",
        "the keypoints and the tree of paper 3's own network, on a coarser grid with fewer channels than the "
        "paper's, with weights of one's own (train marionette-paper): for comparison",
-       "marionette_paper"}};
+       "marionette_paper", nullptr, true}};
   return all;
 }
 
@@ -112,6 +112,10 @@ int index_of(const MethodChoices& choices, const std::string& name) {
   for (size_t i = 0; i < choices.size(); ++i)
     if (name == choices[i].name) return static_cast<int>(i);
   return -1;
+}
+
+std::string tip_of(const MethodChoice& choice) {
+  return std::string(choice.label) + ": " + choice.sentence + ".";
 }
 
 std::string help_of(const MethodChoices& choices) {

@@ -18,6 +18,7 @@ struct MethodChoice {
   const char* weights;       ///< its file in the folder of weights; null: it has no network
   /// An engine without a network. The plug-in makes the others (retarget/plugin/plugin.cpp).
   std::unique_ptr<MotionTransfer> (*make)() = nullptr;
+  bool own_weights = false;  ///< the program comes without its weights: its user trains them
 };
 using MethodChoices = std::vector<MethodChoice>;
 
@@ -41,6 +42,8 @@ std::string names_of(const MethodChoices& choices, const char* between);
 std::vector<std::string> labels_of(const MethodChoices& choices);
 /// Which of them has the name; -1: none.
 int index_of(const MethodChoices& choices, const std::string& name);
+/// For a tooltip: "Copy: what it does."
+std::string tip_of(const MethodChoice& choice);
 /// For help: "copy: what it does; paper: what it does".
 std::string help_of(const MethodChoices& choices);
 

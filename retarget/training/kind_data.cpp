@@ -7,7 +7,7 @@
 #include "retarget/base/error.hpp"
 #include "retarget/creature/creature.hpp"
 #include "retarget/math/rotation.hpp"
-#include "retarget/networks/train_options.hpp"
+#include "retarget/pipeline/keypoint_finder.hpp"
 #include "retarget/rig/person_rig.hpp"
 
 namespace understudy::training {
@@ -38,7 +38,7 @@ void place_anywhere(RigMotion& motion, Rng& rng) {
 }  // namespace
 
 KindData::KindData(const std::string& kind, const std::string& folder, Split split) {
-  const auto& kinds = nn::kMarionetteKinds;
+  const auto& kinds = kBodyKinds;
   US_CHECK(std::find(kinds.begin(), kinds.end(), kind) != kinds.end(), "there is no kind \"", kind, "\"");
   if (kind == "person") {
     people_ = load_training_data(folder, split);

@@ -16,7 +16,7 @@ namespace understudy::training {
 /// one thread.
 class KindData {
  public:
-  /// kind: one of nn::kMarionetteKinds. Throws Error for another, and naming what of the folder cannot be
+  /// kind: one of kBodyKinds. Throws Error for another, and naming what of the folder cannot be
   /// read; the folder does not matter to creatures.
   KindData(const std::string& kind, const std::string& folder, Split split);
 

@@ -123,7 +123,9 @@ const Changes& document_changes() {
       {"swap.last", [](SavedDocument& s) { ++swap(s.document).last; }},
       {"swap.limbs", [](SavedDocument& s) { swap(s.document).limbs = SwapEdit::Limbs::Arms; }},
       CHANGE(bones.wanted = false),
-      CHANGE(bones.most = 7),
+      CHANGE(bones.search.most = 7),
+      CHANGE(bones.search.method = "parts"),
+      CHANGE(bones.search.kind = "hand"),
       CHANGE(bones.edits.pop_back()),
       CHANGE(bones.edits[0] = FitAgain{}),
       CHANGE(bones.second.path += "x"),
@@ -261,7 +263,8 @@ const Changes& document_changes() {
       FlatTake();
   [[maybe_unused]] const auto& [bone, pixels, locked] = ChosenLength();
   [[maybe_unused]] const auto& [canvas_x, canvas_y, zoom] = CanvasView();
-  [[maybe_unused]] const auto& [wanted, most, bone_edits, second, clips] = OwnBones();
+  [[maybe_unused]] const auto& [wanted, search, bone_edits, second, clips] = OwnBones();
+  [[maybe_unused]] const auto& [most, bones_method, body_kind] = BoneSearch();
   [[maybe_unused]] const auto& [clip_name, clip_how] = MadeClip();
   [[maybe_unused]] const auto& [made_frames, between, made_loop, seed, count, made_engine, paper_sampling] =
       GenerationOptions();

@@ -142,7 +142,7 @@ SavedDocument full_document(const std::string& folder) {
   saved.document.skeleton_edits = {DragEdit{7, RightAnkle, Vec3(0.01f, 0.02f, -0.03f), 9, true},
                                    SwapEdit{10, 20, SwapEdit::Limbs::Legs}};
   saved.document.bones = {true,
-                          12,
+                          {12, "slots", "quadruped"},
                           rig_edits(),
                           {folder + "/an other.glb", {{"tail", "tail 2"}, {"horn", ""}}},
                           {{"trot", {40, FramesBetween{3, 17}, true, 7, 1, "vrnn", true}}}};

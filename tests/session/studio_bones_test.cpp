@@ -7,6 +7,7 @@
 #include "retarget/character/rig_character.hpp"
 #include "retarget/math/rotation.hpp"
 #include "retarget/pipeline/human_rest.hpp"
+#include "tests/retarget/discovery/arm_finder.hpp"
 #include "tests/session/arm_studio.hpp"
 
 namespace understudy::app {
@@ -37,6 +38,15 @@ class Bones : public ArmStudioTest {
     return own;
   }
 };
+
+/// Knows the keypoints of arms; of hands it has no weights.
+StudioServices with_keypoints(StudioServices own) {
+  own.keypoints = [](const std::string& method, const std::string& kind) -> std::shared_ptr<KeypointFinder> {
+    US_CHECK(kind == "arm", "weights/marionette_", method, "_", kind, ".weights: is missing");
+    return std::make_shared<ArmFinder>(true);
+  };
+  return own;
+}
 
 bool same_rigs(const DiscoveredRig& a, const DiscoveredRig& b) {
   bool same = a.found.rig.skin.weights == b.found.rig.skin.weights &&
@@ -85,6 +95,86 @@ TEST_F(Bones, AreFoundWithTheirElbowAndOpenedAgainTheSame) {
   ASSERT_TRUE(studio.session().bones.rig);
   EXPECT_TRUE(same_rigs(*found, *studio.session().bones.rig));
   EXPECT_EQ(rig(studio).joints[1].name, "forearm");
+}
+
+TEST_F(Bones, FoundBySlotsAreTheKindsKeypointsAndAreOpenedAgainTheSame) {
+  std::shared_ptr<const DiscoveredRig> found;
+  {
+    Studio studio(with_keypoints(services()));
+    find(studio);
+    const auto by_parts = studio.session().bones.rig;
+    studio.run("bones.find", {"slots", "arm"});
+    studio.wait_idle();
+    found = studio.session().bones.rig;
+    ASSERT_TRUE(found) << studio.session().bones.problem;
+    ASSERT_EQ(rig(studio).count(), 3);
+    EXPECT_EQ(rig(studio).joints[2].name, "keypoint 3");
+    EXPECT_EQ(found->found.motion.poses.size(), static_cast<size_t>(understudy::kFrames));
+    studio.run("edit.undo");
+    studio.tick(0);
+    EXPECT_EQ(studio.session().bones.rig, by_parts);
+    studio.run("edit.redo");
+    studio.tick(0);
+    EXPECT_EQ(studio.session().bones.rig, found);
+    EXPECT_EQ(studio.session().bones.job, 0) << "no new search";
+    studio.run("document.save_as", {path("arm.understudy")});
+  }
+  Studio studio(with_keypoints(services()));
+  studio.run("document.open", {path("arm.understudy")});
+  studio.wait_idle();
+  ASSERT_TRUE(studio.session().bones.rig);
+  EXPECT_TRUE(same_rigs(*found, *studio.session().bones.rig));
+  EXPECT_EQ(rig(studio).joints[2].name, "keypoint 3");
+  studio.run("bones.find", {"auto"});
+  EXPECT_EQ(studio.session().document.bones.search.method, "parts") << "so many bones are of parts";
+}
+
+TEST_F(Bones, KeypointsAreShownBeforeTheyAreFitted) {
+  Studio studio(with_keypoints(services()));
+  open_arm(studio);
+  studio.run("bones.find", {"slots", "arm"});
+  while (!studio.session().bones.so_far && !studio.session().bones.rig) studio.tick(0);
+  ASSERT_TRUE(studio.session().bones.so_far);
+  EXPECT_EQ(studio.session().bones.so_far->tree.size(), 3u);
+  studio.wait_idle();
+}
+
+TEST_F(Bones, OfOneScanAreFoundBySlotsAlone) {
+  write_arm("one.npz", 1);
+  Studio studio(with_keypoints(services()));
+  studio.run("open", {path("one.npz")});
+  studio.run("source.units", {"m"});
+  studio.run("source.up", {"y"});
+  studio.wait_idle();
+  studio.run("bones.find");
+  studio.wait_idle();
+  EXPECT_NE(studio.session().bones.problem.find("two frames or more"), std::string::npos);
+  EXPECT_EQ(studio.session().errors.size(), 1u);
+  studio.run("bones.find", {"slots", "arm"});
+  studio.wait_idle();
+  ASSERT_TRUE(studio.session().bones.rig) << studio.session().bones.problem;
+  EXPECT_EQ(rig(studio).count(), 3);
+  EXPECT_TRUE(studio.session().bones.rig->seen_once());
+  EXPECT_EQ(studio.session().bones.rig->found.motion.poses.size(), 1u);
+}
+
+TEST_F(Bones, BySlotsRefuseWhatCannotBeFoundWithOneSentence) {
+  Studio studio(with_keypoints(services()));
+  open_arm(studio);
+  EXPECT_NE(refusal([&] { studio.run("bones.find", {"slots"}); }).find("name the one that moves"),
+            std::string::npos);
+  EXPECT_NE(refusal([&] {
+              studio.run("bones.find", {"slots", "teapot"});
+            }).find("teapot"),
+            std::string::npos);
+  EXPECT_NE(refusal([&] { studio.run("bones.find", {"parts", "arm"}); }).find("any kind"), std::string::npos);
+  EXPECT_NE(refusal([&] { studio.run("bones.find", {"slotz"}); }).find("parts, slots"), std::string::npos);
+  EXPECT_FALSE(studio.session().document.bones.wanted);
+  studio.run("bones.find", {"slots", "hand"});
+  studio.wait_idle();
+  EXPECT_FALSE(studio.session().bones.rig);
+  ASSERT_EQ(studio.session().errors.size(), 1u) << "told in a dialog";
+  EXPECT_EQ(studio.session().errors[0].text, "weights/marionette_slots_hand.weights: is missing");
 }
 
 TEST_F(Bones, GoAndComeWithUndoAndRedoWithoutAnotherSearch) {

@@ -5,6 +5,7 @@
 #include "retarget/character/gltf_character.hpp"
 #include "retarget/character/read_character.hpp"
 #include "retarget/character/rig_character.hpp"
+#include "tests/retarget/discovery/arm_finder.hpp"
 #include "tests/session/arm_studio.hpp"
 
 namespace understudy::app {
@@ -73,6 +74,20 @@ TEST_F(SecondBodyTest, ARigPerformsWithTheBonesThatAreItsOwn) {
     EXPECT_LT(apart(performed, t, first, t), 0.4f * moved) << "frame " << t << " of the same body";
   EXPECT_GT(second(studio).place.y() + second(studio).place.x(), 0.5f) << "beside the first";
   EXPECT_EQ(undo_label(studio.session()), "Have a second body perform it");
+}
+
+TEST_F(SecondBodyTest, ScansOfItAreSearchedAsTheFirstOnesWere) {
+  StudioServices own = services();
+  own.keypoints = [](const std::string&, const std::string&) { return std::make_shared<ArmFinder>(true); };
+  Studio studio(std::move(own));
+  open_arm(studio);
+  studio.run("bones.find", {"slots", "arm"});
+  studio.wait_idle();
+  write_arm("other.npz", understudy::kFrames, 1, 1200);
+  perform(studio, "other.npz");
+  ASSERT_TRUE(second(studio).performed) << second(studio).problem;
+  EXPECT_EQ(second(studio).performed->rig.joints[1].name, "keypoint 2");
+  EXPECT_EQ(second(studio).matches.partner, (std::vector<int>{0, 1, 2})) << "bones of one name";
 }
 
 TEST_F(SecondBodyTest, OneScanGetsTheFirstOnesBones) {

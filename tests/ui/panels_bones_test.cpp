@@ -30,6 +30,35 @@ TEST_F(BonesPanel, AsksForAsManyAsMoveOrForSoManyAtMost) {
   expect_click("bones.find", {"bones.find 9"});
 }
 
+TEST_F(BonesPanel, AsksForAKindsKeypoints) {
+  panel("bones");
+  click("bones.method.1");
+  frame(2);
+  EXPECT_FALSE(shown("bones.auto")) << "a kind has its number of bones";
+  expect_click("bones.find", {"bones.find slots person"});
+  click("bones.body");
+  frame(2);
+  click("bones.body.2");
+  frame(2);
+  expect_click("bones.find", {"bones.find slots hand"});
+  session.document.bones.search = {0, "slots", "arm"};
+  frame(2);
+  expect_click("bones.find", {"bones.find slots arm"});
+  session.document.bones.search = {};  // undone
+  frame(2);
+  expect_click("bones.find", {"bones.find auto"});
+}
+
+TEST_F(BonesPanel, OffersMethodsWithoutWeightsOnlyWhereTheDocumentHasThem) {
+  panel("bones");
+  EXPECT_FALSE(shown("bones.method.2"));
+  session.document.bones.search = {0, "paper", "person"};
+  frame(2);
+  if (!shown("bones.method.2")) click("bones.method");  // a list where three are too wide
+  frame(2);
+  EXPECT_TRUE(shown("bones.method.2"));
+}
+
 TEST_F(BonesPanel, WithoutASourceThereIsNothingToFind) {
   session.document.source.path.clear();
   panel("bones");

@@ -1,10 +1,11 @@
 // The source's own skeleton: finding it, a table of its bones, edits of it, who of them is near which joint
 // of a person, export.
-// Sections: bones.all, bones.one, bones.motion, bones.near. Marks: bones.auto, bones.most, bones.find,
-// bones.work (.cancel), bones.stage.K; bones.bone.K (a row), bones.surface.K, bones.name, bones.kind,
-// bones.merge, bones.split, bones.root, bones.x, .y, .z, bones.turn_tool, bones.turn_x, .turn_y, .turn_z;
-// bones.paint_tool, bones.brush_radius, .brush_strength, .brush_mode; bones.strength, bones.smooth,
-// bones.trim, bones.fit; bones.near.K, bones.name_as_joints; bones.export, bones.drop.
+// Sections: bones.all, bones.one, bones.motion, bones.near. Marks: bones.method, bones.body (.K, their
+// choices), bones.auto, bones.most, bones.find, bones.work (.cancel), bones.stage.K; bones.bone.K (a row),
+// bones.surface.K, bones.name, bones.kind, bones.merge, bones.split, bones.root, bones.x, .y, .z,
+// bones.turn_tool, bones.turn_x, .turn_y, .turn_z; bones.paint_tool, bones.brush_radius, .brush_strength,
+// .brush_mode; bones.strength, bones.smooth, bones.trim, bones.fit; bones.near.K, bones.name_as_joints;
+// bones.export, bones.drop.
 // The second body, in second_body.cpp: bones.second; bones.perform, bones.perform.work (.cancel),
 // bones.match.K (.I, its choices), bones.perform_export, bones.perform_drop.
 // Further motions, in made_motions.cpp: bones.made; generate.frames, .between, .first, .last, .marks, .loop,
@@ -12,6 +13,7 @@
 // generate.clear, generate.clips.K, generate.name, generate.remove.
 #include <algorithm>
 #include <array>
+#include <cctype>
 
 #include "retarget/base/index.hpp"
 #include "retarget/base/text.hpp"
@@ -25,9 +27,9 @@ namespace understudy::ui {
 namespace {
 
 struct BonesPanelState {
-  int most = 0;  ///< bones to ask for; 0: as many as the motion shows
-  int most_of_document = 0;
-  float strength = 0.5f;  ///< of smoothing
+  app::BoneSearch search;       ///< to ask for
+  app::BoneSearch of_document;  ///< that was asked for
+  float strength = 0.5f;        ///< of smoothing
   std::shared_ptr<const DiscoveredRig> of;
   std::vector<int> vertices;  ///< of each bone, those that it moves most
 };
@@ -52,8 +54,8 @@ constexpr std::array<StageWords, 4> kStages = {{{"Reading", "Read the scans"},
                                                 {"Following", "Follow the other frames"}}};
 
 void follow_rig(const app::Session& session, BonesPanelState& state) {
-  const int most = session.document.bones.most;
-  if (most != state.most_of_document) state.most = state.most_of_document = most;
+  const app::BoneSearch& search = session.document.bones.search;
+  if (!same(search, state.of_document)) state.search = state.of_document = search;
   if (state.of == session.bones.rig) return;
   state.of = session.bones.rig;
   state.vertices.clear();
@@ -63,22 +65,57 @@ void follow_rig(const app::Session& session, BonesPanelState& state) {
   for (Eigen::Index v = 0; v < skin.size(); ++v) ++state.vertices[static_cast<size_t>(skin.main_bone(v))];
 }
 
-void draw_start_rows(const BonesDrawing& d) {
-  bool automatic = d.state.most == 0;
+/// Those that the program has weights for, and the document's own.
+MethodChoices offered_methods(const BonesDrawing& d) {
+  MethodChoices offered;
+  for (const MethodChoice& method : rig_methods())
+    if (!method.own_weights || d.session.document.bones.search.method == method.name)
+      offered.push_back(method);
+  return offered;
+}
+
+void draw_most(const BonesDrawing& d) {
+  int& most = d.state.search.most;
+  bool automatic = most == 0;
   if (toggle_row(d.ui(), {"bones.auto", "Automatic", "As many bones as the motion shows"}, automatic))
-    d.state.most = automatic ? 0 : 12;
-  if (!automatic)
-    if (const auto most =
-            typed_number_row(d.ui(), {"bones.most", "At most", "So many bones, or fewer"}, d.state.most, 0))
-      d.state.most = std::clamp(static_cast<int>(*most), 1, app::kMostBones);
+    most = automatic ? 0 : 12;
+  if (automatic) return;
+  if (const auto typed =
+          typed_number_row(d.ui(), {"bones.most", "At most", "So many bones, or fewer"}, most, 0))
+    most = std::clamp(static_cast<int>(*typed), 1, app::kMostBones);
+}
+
+void draw_kind(const BonesDrawing& d) {
+  std::string& kind = d.state.search.kind;
+  if (kind.empty()) kind = d.session.source.no_person ? "quadruped" : "person";
+  std::vector<std::string> labels(kBodyKinds.begin(), kBodyKinds.end());
+  const auto known = std::find(labels.begin(), labels.end(), kind);
+  int chosen = known == labels.end() ? -1 : static_cast<int>(known - labels.begin());
+  for (std::string& label : labels) label[0] = static_cast<char>(std::toupper(label[0]));
+  if (choice_row(d.ui(), {"bones.body", "Kind", "Of the body that moves"}, labels, chosen))
+    kind = kBodyKinds[static_cast<size_t>(chosen)];
+}
+
+void draw_start_rows(const BonesDrawing& d) {
+  app::BoneSearch& search = d.state.search;
+  const MethodChoices methods = offered_methods(d);
+  method_row(d.ui(), {"bones.method", "Found by", "How bones are looked for"}, methods, search.method);
+  const MethodChoice* const method = at_or_null(methods, index_of(methods, search.method));
+  const bool of_kind = method != nullptr && method->weights != nullptr;
+  if (of_kind)
+    draw_kind(d);
+  else
+    draw_most(d);
   const bool again = d.bones().rig != nullptr;
-  const std::string how = d.state.most == 0 ? "auto" : std::to_string(d.state.most);
-  ask_button(d.context,
-             {"bones.find", again ? "Find again" : "Find its own skeleton",
-              again ? "Edits of the bones are dropped; can be undone"
-                    : "Looks at all frames: what moves alike becomes a bone",
-              "bones.find " + how},
-             possible(d.session, "bones.find"));
+  if (method != nullptr && (!again || !same(search, d.state.of_document))) hint(d.ui(), tip_of(*method));
+  const std::string how = of_kind            ? search.method + " " + search.kind
+                          : search.most == 0 ? "auto"
+                                             : std::to_string(search.most);
+  ask_button(
+      d.context,
+      {"bones.find", again ? "Find again" : "Find its own skeleton",
+       again ? "Edits of the bones are dropped; can be undone" : "Looks at all frames", "bones.find " + how},
+      possible(d.session, "bones.find"));
 }
 
 /// Each stage with a tick, the one that is worked on in full colour.
@@ -130,6 +167,8 @@ void draw_summary(const BonesDrawing& d) {
   if (known > 0) row_text(d.ui(), "Off the scans", figure(1000 * off / known, "mm") + ", mean");
   if (doubted > 0)
     row_text(d.ui(), "Not to be trusted", std::to_string(doubted) + (doubted == 1 ? " frame" : " frames"));
+  if (found.seen_once())
+    hint(d.ui(), "Seen in one frame: its joints are where the network sees them, no motion has shown them.");
   if (!found.complete) hint(d.ui(), "Ended early: this is the best that was found by then.");
 }
 
@@ -325,9 +364,8 @@ void draw_bones(const app::Session& session, PanelContext& context) {
   if (!session.bones.rig) {
     if (session.bones.job == 0)
       hint(context.ui,
-           "Finds bones, skin and motion of anything that moves: no template, no training. The scans must "
-           "show one "
-           "thing alone: crop it, or remove the floor, in Edit > Scan.");
+           "Finds bones, skin and motion of anything that moves. The scans must show one thing alone: crop "
+           "it, or remove the floor, in Edit > Scan.");
     return;
   }
   draw_all(d);

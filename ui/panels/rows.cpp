@@ -24,8 +24,7 @@ float words_width(Ui& ui, const std::vector<std::string>& choices) {
 
 /// With a sentence for each choice: "Copy: turns the target's bones as the source's turn."
 Control explained(Control control, const MethodChoices& choices) {
-  for (const MethodChoice& choice : choices)
-    control.tips.push_back(std::string(choice.label) + ": " + choice.sentence + ".");
+  for (const MethodChoice& choice : choices) control.tips.push_back(tip_of(choice));
   return control;
 }
 

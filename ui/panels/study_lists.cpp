@@ -106,8 +106,7 @@ void draw_method(const app::Method& method, PanelContext& context, int i) {
   const auto setting = [i](const std::string& name) { return item("conditions", i, "method." + name); };
   const auto tips = [](const MethodChoices& choices) {
     std::vector<std::string> all;
-    for (const MethodChoice& choice : choices)
-      all.push_back(std::string(choice.label) + ": " + choice.sentence + ".");
+    for (const MethodChoice& choice : choices) all.push_back(tip_of(choice));
     return all;
   };
   study_choice(context, setting("engine"), labels_of(engines()), names_of(engines()), method.engine,
