@@ -23,6 +23,8 @@ constexpr Subcommand kSubcommands[] = {
     {"play", "plays a script of the studio without a window", declare_play},
     {"retarget", "lets a target perform what a source does", declare_retarget},
     {"export", "a character performs motions, as an animated GLB or glTF", declare_export},
+    {"batch", "does a list of such jobs, in any number of processes, and goes on where it was stopped",
+     declare_batch},
     {"discover", "finds the bones of anything that moves in its scans", declare_discover},
     {"generate", "makes more of what a rigged character does in its clip", declare_generate},
     {"fill", "makes the frames of a motion that were not captured, or not well", declare_fill},
