@@ -181,7 +181,7 @@ TEST_F(Batch, RefusesListsThatAreNoneBeforeItBegins) {
   const std::string line = R"({"id": "a", "source": "s", "target": "t"})";
   expect_refusal(
       R"({"id": "a", "source": "s", "target": "t", "options": {"no-lock-foot": true}})",
-      "jobs.jsonl line 1: retarget option 'no-lock-foot' is not known; the nearest that is: 'no-foot-lock'");
+      "jobs.jsonl line 1: retarget option 'no-lock-foot' is not known; the nearest that is: 'no-lock-feet'");
   expect_refusal(R"({"id": "a", "source": "s", "targets": "t"})",
                  "jobs.jsonl line 1: 'targets' is not known; the nearest that is: 'target'");
   expect_refusal(line + "\n" + line, "jobs.jsonl line 2: the id 'a' is that of line 1");
