@@ -78,7 +78,10 @@ int run(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   try {
-    understudy::nn::prepare_environment(/*trains=*/argc > 1 && std::string(argv[1]) == "train");
+    const std::string command = argc > 1 ? argv[1] : "";
+    const bool shares = command == "train" || command == "batch";  // with its own threads, or processes
+    using understudy::nn::Threads;
+    understudy::nn::prepare_environment(shares ? Threads::OneEach : Threads::SomeOfTheCores);
     return understudy::app::run(argc, argv);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "understudy: %s\n", error.what());

@@ -8,14 +8,18 @@ set -euo pipefail
 cd "$(dirname "$(readlink -f "$0")")/.."
 program=$(readlink -f "${1:-build}")/understudy
 jobs=200 tasks=8 scans=${SCANS:-200} host=$(hostname -s)
-for needed in munged slurmctld slurmd sbatch; do
-  command -v $needed >/dev/null || { echo "$needed is missing: apt-get install slurm-wlm munge" >&2; exit 1; }
-done
+. cmake/build.sh
+install_packages slurm
 [ "$(id -u)" -eq 0 ] || { echo "slurmd needs root" >&2; exit 1; }
 
 work=$(mktemp -d)
 chmod 755 "$work"
 stop() {
+  [ -z "${array:-}" ] || scancel "$array" 2>/dev/null || true
+  for _ in $(seq 40); do
+    [ -n "${array:-}" ] && squeue -h -j "$array" 2>/dev/null | grep -q . || break
+    sleep 0.5
+  done
   for daemon in slurmd slurmctld munged; do
     [ ! -s "$work/$daemon.pid" ] || kill "$(cat "$work/$daemon.pid")" 2>/dev/null || true
   done

@@ -7,7 +7,6 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
-#include <cstdlib>
 #include <filesystem>
 #include <set>
 
@@ -188,12 +187,6 @@ std::string without(std::string text, const std::string& folder) {
   return text;
 }
 
-/// A path in the environment means the same from another folder.
-void keep_path(const char* variable) {
-  const char* const path = std::getenv(variable);
-  if (path != nullptr && *path != '\0') ::setenv(variable, fs::absolute(path).c_str(), 1);
-}
-
 void be_silent() {
   const int nowhere = ::open("/dev/null", O_RDWR | O_CLOEXEC);
   for (const int stream : {0, 1, 2}) ::dup2(nowhere, stream);
@@ -220,8 +213,6 @@ BatchWorker::BatchWorker(const Manifest& manifest, const ResultFolder& results)
     : manifest_(manifest), results_(results), work_(results) {
   only_remember(SIGTERM);
   only_remember(SIGINT);
-  for (const char* variable : {"UNDERSTUDY_WEIGHTS", "UNDERSTUDY_PLUGIN"}) keep_path(variable);
-  ::setenv("OMP_NUM_THREADS", "1", 1);
   limit_threads(1);
   fs::current_path(manifest.folder);
   log::set_sink([this](log::Level level, const std::string& message) {
