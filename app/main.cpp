@@ -79,9 +79,9 @@ int run(int argc, char** argv) {
 int main(int argc, char** argv) {
   try {
     const std::string command = argc > 1 ? argv[1] : "";
-    const bool shares = command == "train" || command == "batch";  // with its own threads, or processes
-    using understudy::nn::Threads;
-    understudy::nn::prepare_environment(shares ? Threads::OneEach : Threads::SomeOfTheCores);
+    const bool is_many =
+        command == "train" || command == "batch";  // threads or processes, each computes alone
+    understudy::nn::prepare_environment(/*trains=*/is_many);
     return understudy::app::run(argc, argv);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "understudy: %s\n", error.what());

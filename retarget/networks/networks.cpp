@@ -148,7 +148,7 @@ void clamp_threads() {
 
 }  // namespace
 
-void prepare_environment(Threads threads) {
+void prepare_environment(bool trains) {
   // OpenBLAS 0.3.21 does not know processors newer than itself and falls back to kernels five times slower.
 #if defined(__x86_64__)
   if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") &&
@@ -159,7 +159,7 @@ void prepare_environment(Threads threads) {
 #endif
   // Waiting threads that spin take the cores from whoever draws or compiles.
   setenv("OMP_WAIT_POLICY", "PASSIVE", 0);
-  setenv("OMP_NUM_THREADS", std::to_string(threads == Threads::OneEach ? 1 : inference_threads()).c_str(), 0);
+  setenv("OMP_NUM_THREADS", std::to_string(trains ? 1 : inference_threads()).c_str(), 0);
   clamp_threads();
   for (const char* variable : {"UNDERSTUDY_WEIGHTS", "UNDERSTUDY_PLUGIN"})
     if (const char* path = std::getenv(variable); path && *path != '\0')

@@ -19,13 +19,10 @@
 
 namespace understudy::nn {
 
-/// Who computes at once in this process.
-enum class Threads { SomeOfTheCores, OneEach };  ///< OneEach: others work beside it, threads or processes
-
 /// Sets what OpenBLAS and OpenMP read from the environment when they are loaded; what the user set stays, but
-/// for more threads than any machine has, and paths in it mean the same from any working folder afterwards.
-/// Call it first in main(): no other thread may run yet.
-void prepare_environment(Threads threads = Threads::SomeOfTheCores);
+/// for more threads than any machine has. Call it first in main(): no other thread may run yet. Trainers
+/// bring their own threads, each of which computes alone.
+void prepare_environment(bool trains = false);
 
 struct NetworkOptions {
   std::string weights;                      ///< folder of the weights; empty: the program's own
