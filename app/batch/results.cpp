@@ -185,7 +185,7 @@ WorkFolder::~WorkFolder() {
 }
 
 std::string WorkFolder::begin(const std::string& id) {
-  const std::string folder = this->folder(id);
+  std::string folder = this->folder(id);
   std::error_code ignored;
   fs::remove_all(folder, ignored);
   make_folder(folder);

@@ -53,6 +53,7 @@ std::vector<std::string> keys_of(const std::vector<JobResult>& results, const ch
       if (one.contains(object))
         for (const auto& item : one[object].items()) sorted.insert({place_of(item.key()), item.key()});
   std::vector<std::string> keys;
+  keys.reserve(sorted.size());
   for (const auto& [place, key] : sorted) keys.push_back(key);
   return keys;
 }
