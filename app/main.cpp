@@ -23,6 +23,8 @@ constexpr Subcommand kSubcommands[] = {
     {"play", "plays a script of the studio without a window", declare_play},
     {"retarget", "lets a target perform what a source does", declare_retarget},
     {"export", "a character performs motions, as an animated GLB or glTF", declare_export},
+    {"batch", "does a list of such jobs, in any number of processes, and goes on where it was stopped",
+     declare_batch},
     {"discover", "finds the bones of anything that moves in its scans", declare_discover},
     {"generate", "makes more of what a rigged character does in its clip", declare_generate},
     {"fill", "makes the frames of a motion that were not captured, or not well", declare_fill},
@@ -76,7 +78,10 @@ int run(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   try {
-    understudy::nn::prepare_environment(/*trains=*/argc > 1 && std::string(argv[1]) == "train");
+    const std::string command = argc > 1 ? argv[1] : "";
+    const bool is_many =
+        command == "train" || command == "batch";  // threads or processes, each computes alone
+    understudy::nn::prepare_environment(/*trains=*/is_many);
     return understudy::app::run(argc, argv);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "understudy: %s\n", error.what());

@@ -2,7 +2,7 @@
 install(TARGETS understudy RUNTIME DESTINATION bin)
 install(TARGETS networks_plugin LIBRARY DESTINATION lib/understudy)
 install(DIRECTORY assets/weights DESTINATION share/understudy FILES_MATCHING PATTERN *.weights PATTERN README.md)
-install(DIRECTORY assets/samples assets/styles assets/study_web DESTINATION share/understudy)
+install(DIRECTORY assets/samples assets/styles assets/study_web assets/batch DESTINATION share/understudy USE_SOURCE_PERMISSIONS)
 install(FILES cmake/install/understudy.desktop DESTINATION share/applications)
 install(FILES cmake/install/understudy.svg DESTINATION share/icons/hicolor/scalable/apps)
 install(FILES cmake/install/understudy.xml DESTINATION share/mime/packages)

@@ -15,6 +15,7 @@ using Action = std::function<int()>;
 /// Each adds its options to the command and gives the action that reads them.
 Action declare_retarget(CLI::App& command);
 Action declare_export(CLI::App& command);
+Action declare_batch(CLI::App& command);
 Action declare_discover(CLI::App& command);
 Action declare_generate(CLI::App& command);
 Action declare_fill(CLI::App& command);

@@ -11,6 +11,7 @@
 #include "app/cli/headless.hpp"
 #include "app/cli/options.hpp"
 #include "app/cli/progress.hpp"
+#include "app/run/doubt_tally.hpp"
 #include "app/run/export_presets.hpp"
 #include "app/run/exports.hpp"
 #include "app/run/flat_performance.hpp"
@@ -49,6 +50,8 @@ struct ExportOptions {
 struct Performance {
   std::vector<ExportInput> performers;
   std::string by;
+  DoubtTally doubt{};  // of sources; a document's takes bring none
+  int64_t flagged = 0;
 };
 
 /// One of the people of a source, as it is opened for them.
@@ -111,7 +114,8 @@ std::vector<Role> roles_in(const ExportOptions& options, const std::string& path
 }
 
 /// One source to its end, after what was performed before.
-void perform(const ExportOptions& options, const Role& role, Retargeter& retargeter, ExportInput& input) {
+void perform(const ExportOptions& options, const Role& role, Retargeter& retargeter, ExportInput& input,
+             Performance& out) {
   const std::string& path = role.source.path;
   const auto source = open_source(role.source);
   RetargetedSource retargeted(*source, retargeter, role.source, source_tools(options.how));
@@ -128,6 +132,7 @@ void perform(const ExportOptions& options, const Role& role, Retargeter& retarge
   };
   Progress progress(role.called + " -> " + input.name, source->count().value_or(0));
   while (const auto frame = retargeted.next()) {
+    out.doubt.add(frame->result);
     add(tempo.push(frame->result));
     progress.step(retargeted.frames());
     check_interrupt("after frame " + std::to_string(frame->scan.number));
@@ -137,6 +142,7 @@ void perform(const ExportOptions& options, const Role& role, Retargeter& retarge
   add(tempo.finish());
   check_interrupt("after " + std::to_string(retargeted.frames()) + " frames");
   retargeted.check_used();
+  out.flagged += retargeted.flagged();
   if (retargeted.flagged() > 0)
     log::warn(path + ": " + std::to_string(retargeted.flagged()) +
               " of its frames could not be used and repeat the last pose");
@@ -197,7 +203,7 @@ Performance perform_sources(const ExportOptions& options, const ExportFormat& fo
     input.name = clip_name(path);
     for (const auto& of_source : roles)
       for (size_t i = 0; i < of_source.size(); ++i)
-        if (options.targets.size() == 1 || i == k) perform(options, of_source[i], retargeter, input);
+        if (options.targets.size() == 1 || i == k) perform(options, of_source[i], retargeter, input, out);
     append_item(out.by, options.targets.size() == 1 ? path : file_name(path));
     out.performers.push_back(std::move(input));
   }
@@ -305,6 +311,10 @@ void report_cost(const ExportOptions& options, const Performance& done, const Ex
   if (cost.measured) {
     report["cost"]["mean_mm"] = cost.mean_mm;
     report["cost"]["largest_mm"] = cost.largest_mm;
+  }
+  if (options.document.empty()) {
+    report["flagged"] = done.flagged;
+    report["doubt"] = done.doubt.json();
   }
   write_json(options.report, report);
 }
@@ -432,15 +442,20 @@ Action declare_export(CLI::App& command) {
                      "takes of the document, by name or number from 1; each becomes a clip");
   command.add_flag("--all-takes", options->all_takes,
                    "a file of each take of the document, named after it, in the folder --out (default: GLB)");
-  command.add_option("--source", options->sources, "motions to perform; each becomes a clip");
-  command.add_option("--target", options->targets,
-                     "a character or an SMPL-format body: " + format_names(kTarget) +
-                         "; several perform several people of the source at once, in one GLB or glTF file: "
-                         "--person all, or a list such as 1,3 with a person for each target");
-  command.add_option("--out", options->out, "the file, or the folder of a sequence");
+  command.add_option("--source", options->sources, "motions to perform; each becomes a clip")
+      ->type_name(kReadPath);
+  command
+      .add_option("--target", options->targets,
+                  "a character or an SMPL-format body: " + format_names(kTarget) +
+                      "; several perform several people of the source at once, in one GLB or glTF file: "
+                      "--person all, or a list such as 1,3 with a person for each target")
+      ->type_name(kReadPath);
+  command.add_option("--out", options->out, "the file, or the folder of a sequence")->type_name(kWrittenPath);
   command.add_flag("--print-map", options->print_map, "prints which bone is which joint, and stops");
-  command.add_option("--preview", options->preview, "contact sheet of the written file as PNG");
-  command.add_option("--report", options->report, "file size and differences from the viewport, as JSON");
+  command.add_option("--preview", options->preview, "contact sheet of the written file as PNG")
+      ->type_name(kWrittenPath);
+  command.add_option("--report", options->report, "file size and differences from the viewport, as JSON")
+      ->type_name(kWrittenPath);
   add_source_options(command, options->source);
   add_target_options(command, options->target);
   add_file_options(command, *options);

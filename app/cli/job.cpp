@@ -5,6 +5,7 @@
 
 #include "app/cli/preview.hpp"
 #include "app/cli/progress.hpp"
+#include "app/run/doubt_tally.hpp"
 #include "app/run/evaluator.hpp"
 #include "app/run/exports.hpp"
 #include "app/run/interrupt.hpp"
@@ -31,6 +32,7 @@ struct Running {
   std::optional<PreviewMoments> moments, skeletons;
   std::optional<Evaluator> evaluator;
   Latency latency;
+  DoubtTally doubt;
   log::Tally repeats;          // of the last pose
   std::vector<float> doubt_m;  // of each frame that was made, 0 where it was captured
 };
@@ -73,6 +75,7 @@ void take_frame(Running& job, const RetargetedFrame& frame, bool live) {
   const PerformedFrame& result = frame.result;
   const double fps = job.source->fps();
   job.latency.add(frame.times);
+  job.doubt.add(result);
   if (result.flagged)
     job.repeats.warn("frame " + std::to_string(frame.scan.number) +
                      " repeats the last pose: " + result.reason);
@@ -98,6 +101,7 @@ Json report_of(const JobOptions& options, const Running& job) {
   report["fps"] = job.source->fps();
   report["frames"] = job.retargeted->frames();
   report["flagged"] = job.retargeted->flagged();
+  report["doubt"] = job.doubt.json();
   if (const std::vector<MadeFrames> made = made_frames(job.doubt_m); !made.empty())
     report["made_frames"] = to_json(made);
   Metrics metrics = job.evaluator->metrics();

@@ -101,33 +101,40 @@ void add_source_options(CLI::App& command, SourceOptions& source) {
       "--person", source.person,
       "who of several people in scans: a number from 1, largest, or all (default: who is seen best); in 2D "
       "poses: the number that the file tells, else 1, 2 ... (default: who is seen longest)");
-  command.add_option("--motion", source.motion,
-                     "AMASS-format motion that an SMPL-format source body performs");
+  command
+      .add_option("--motion", source.motion, "AMASS-format motion that an SMPL-format source body performs")
+      ->type_name(kReadPath);
   command.add_option("--source-betas", source.betas, "shape parameters of the source body")->delimiter(',');
   command.add_option("--clip", source.clip,
                      "which animation of a skeletal source: its name or number (default: the longest)");
   CLI::Option* const as_scan = command.add_flag(
       "--as-scan", source.as_scan, "treats an animated source's surface as a scan and ignores its skeleton");
-  CLI::Option* const map = command.add_option_function<std::string>(
-      "--source-map", [&source](const std::string& path) { source.bones = read_bone_choices(path); },
-      R"(JSON that names bones of a skeletal source: {"left_wrist": "Hand.L"})");
+  CLI::Option* const map =
+      command
+          .add_option_function<std::string>(
+              "--source-map", [&source](const std::string& path) { source.bones = read_bone_choices(path); },
+              R"(JSON that names bones of a skeletal source: {"left_wrist": "Hand.L"})")
+          ->type_name(kReadPath);
   map->excludes(as_scan);
   command.add_flag("--follow", source.follow, "the source folder is still being written");
   command
       .add_option("--fps", source.fps, "frames per second of the source (default: the motion's own, or 30)")
       ->check(CLI::Range(1.0, 1000.0));
-  command.add_option(
-      "--times", source.times,
-      "CSV of when each scan was taken: its file or number, seconds; --fps is then the rate of "
-      "the result (default: the usual interval's)");
+  command
+      .add_option("--times", source.times,
+                  "CSV of when each scan was taken: its file or number, seconds; --fps is then the rate of "
+                  "the result (default: the usual interval's)")
+      ->type_name(kReadPath);
   command
       .add_option(
           "--complete", source.complete,
           "fits one body to all scans, however few and sparse, and makes so many frames per second of "
           "them; looks both ways")
       ->check(CLI::Range(1.0, 1000.0));
-  command.add_option("--markers", source.markers,
-                     "CSV of markers for --complete: seconds,name,x,y,z in the scans' units and axes");
+  command
+      .add_option("--markers", source.markers,
+                  "CSV of markers for --complete: seconds,name,x,y,z in the scans' units and axes")
+      ->type_name(kReadPath);
   command.add_option("--layout", source.layout,
                      "of 2D poses: the order of the points (default: as names or their count tell)");
   command
@@ -161,9 +168,11 @@ void add_target_options(CLI::App& command, TargetOptions& target) {
           },
           "own: the character's own bones and weights; 22: the 22 joints (default: own, if any)")
       ->check(CLI::IsMember({"auto", "own", "22", "theirs", "ours"}));
-  command.add_option_function<std::string>(
-      "--map", [&target](const std::string& path) { target.bones = read_bone_choices(path); },
-      R"(JSON that names the character's bones: {"left_wrist": "Hand.L"})");
+  command
+      .add_option_function<std::string>(
+          "--map", [&target](const std::string& path) { target.bones = read_bone_choices(path); },
+          R"(JSON that names the character's bones: {"left_wrist": "Hand.L"})")
+      ->type_name(kReadPath);
   command.add_option("--betas", target.betas, "shape parameters of an SMPL-format target")->delimiter(',');
   command.add_option("--target-units", target.import.units, "the target's units: auto, m, dm, cm, mm, in");
   command.add_option("--target-height", target.import.height,
@@ -219,10 +228,12 @@ void add_method_options(CLI::App& command, MethodOptions& how) {
   command.add_flag("--predict", method.predict,
                    "frames that cannot be used go on as those before went, for half a second, instead of "
                    "repeating the last; they stay flagged");
-  command.add_option_function<std::string>(
-      "--style", [&method](const std::string& word) { method.style.choose(word); },
-      "how it is performed: a style that comes with the program (understudy style --list), or a "
-      "style's file");
+  command
+      .add_option_function<std::string>(
+          "--style", [&method](const std::string& word) { method.style.choose(word); },
+          "how it is performed: a style that comes with the program (understudy style --list), or a "
+          "style's file")
+      ->type_name(kReadPath);
   command
       .add_option("--style-strength", method.style.strength,
                   "0: the source as it is, 1: the style, up to 1.5")
@@ -240,11 +251,15 @@ void add_method_options(CLI::App& command, MethodOptions& how) {
           "left_shoulder=0,0,-30; may be given several times")
       ->take_all()
       ->allow_extra_args(false);
-  command.add_option("--weights", how.weights, "folder of the weights (default: beside the program)");
-  command.add_option("--engine-weights", how.engine_file,
-                     "weights file of the engine in place of the folder's");
-  command.add_option("--extractor-weights", how.extractor_file,
-                     "weights file of the extractor in place of the folder's");
+  command.add_option("--weights", how.weights, "folder of the weights (default: beside the program)")
+      ->type_name(kReadPath);
+  command
+      .add_option("--engine-weights", how.engine_file, "weights file of the engine in place of the folder's")
+      ->type_name(kReadPath);
+  command
+      .add_option("--extractor-weights", how.extractor_file,
+                  "weights file of the extractor in place of the folder's")
+      ->type_name(kReadPath);
 }
 
 std::string flat_engine(const MethodOptions& how) {
@@ -271,11 +286,13 @@ void add_tempo_options(CLI::App& command, TempoChoice& tempo) {
 }
 
 void add_pose_options(CLI::App& command, PoseChoice& poses) {
-  command.add_option_function<std::string>(
-      "--camera", [&poses](const std::string& words) { poses.camera = picture_camera(words); },
-      "of pose pictures: yaw=30,pitch=10,distance=4,fov=40 (degrees, metres) and orthographic, any of them; "
-      "a JSON of them; or a file of 2D poses that the first frame is laid onto (default: before the front "
-      "of the first frame, the whole take in view)");
+  command
+      .add_option_function<std::string>(
+          "--camera", [&poses](const std::string& words) { poses.camera = picture_camera(words); },
+          "of pose pictures: yaw=30,pitch=10,distance=4,fov=40 (degrees, metres) and orthographic, any of "
+          "them; a JSON of them; or a file of 2D poses that the first frame is laid onto (default: before "
+          "the front of the first frame, the whole take in view)")
+      ->type_name(kReadPath);
   std::string sizes;
   for (const CanvasPreset& preset : kCanvasPresets)
     append_item(sizes, printed("%dx%d", preset.canvas.width, preset.canvas.height));

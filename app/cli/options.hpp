@@ -21,6 +21,10 @@ class App;
 
 namespace understudy::app {
 
+/// What help calls the value of an option that is a path (or a word in place of one), and what `batch` knows it
+/// by: one that is read, one that is written.
+constexpr const char *kReadPath = "PATH", *kWrittenPath = "NEW-PATH";
+
 /// What takes a floor or a second person out of scans.
 void add_scan_options(CLI::App& command, ScanEdits& edits);
 

@@ -21,27 +21,32 @@ Action declare_retarget(CLI::App& command) {
           "scans: a folder of frames (" + format_names(kScanFrame) +
               "), a list or an array; a skeletal motion: " + format_names(kMotion) +
               "; or an SMPL-format body (--motion); or 2D poses: a folder of JSONs, a JSON, .npy, .npz")
+      ->type_name(kReadPath)
       ->required();
   add_source_options(command, job->source);
   command
       .add_option("--target", job->target.path,
                   "a character in any upright pose, or an SMPL-format body: " + format_names(kTarget))
+      ->type_name(kReadPath)
       ->required();
   add_target_options(command, job->target);
   add_method_options(command, job->how);
   add_tempo_options(command, job->tempo);
-  command.add_option(
-      "--out", job->out,
-      "the animated target: " + export_suffixes() + "; or a folder of pose pictures (--format poses)");
+  command
+      .add_option(
+          "--out", job->out,
+          "the animated target: " + export_suffixes() + "; or a folder of pose pictures (--format poses)")
+      ->type_name(kWrittenPath);
   std::string formats;
   for (const ExportFormat& info : export_formats()) append_item(formats, info.name);
   command.add_option("--format", job->format, formats + " (default: by the suffix)");
   add_pose_options(command, job->poses);
   add_flat_options(command, *flat);
-  command.add_option("--report", job->report, "report as JSON");
-  command.add_option("--preview", job->preview, "contact sheet as PNG");
-  command.add_option("--skeletons", job->skeletons,
-                     "PNG of up to 60 frames with the extracted skeleton in each");
+  command.add_option("--report", job->report, "report as JSON")->type_name(kWrittenPath);
+  command.add_option("--preview", job->preview, "contact sheet as PNG")->type_name(kWrittenPath);
+  command
+      .add_option("--skeletons", job->skeletons, "PNG of up to 60 frames with the extracted skeleton in each")
+      ->type_name(kWrittenPath);
   return [job, flat, &command] {
     const bool is_flat = is_flat_job(*job);
     const bool is_lifted = !is_flat && is_keypoint_source(job->source);

@@ -16,7 +16,15 @@ void remember(int signal) {
   std::signal(signal, SIG_DFL);
 }
 
+void remember_each(int) {
+  pressed = true;
+}
+
 }  // namespace
+
+void only_remember(int signal) {
+  std::signal(signal, remember_each);
+}
 
 void catch_interrupts() {
   std::signal(SIGINT, remember);

@@ -12,6 +12,7 @@
 #include <string_view>
 #include <unordered_map>
 
+#include "retarget/base/threads.hpp"
 #include "retarget/base/union_find.hpp"
 #include "retarget/character/rest_pose.hpp"
 #include "retarget/math/rotation.hpp"
@@ -264,9 +265,11 @@ std::optional<HeadAndNeck> find_big_head(const Mesh& mesh, const Joints& joints)
   return HeadAndNeck{crown, middle, head.low_x, head.high_x};
 }
 
-/// Does work(first, last) for both halves of 0 .. count at once: nothing else runs while a target is bound.
+/// Does work(first, last) for both halves of 0 .. count at once, where there are threads: nothing else runs
+/// while a target is bound.
 template <class Work>
 void in_halves(Eigen::Index count, const Work& work) {
+  if (usable_threads() < 2) return work(Eigen::Index{0}, count);
   auto other = std::async(std::launch::async, [&] { work(count / 2, count); });
   work(0, count / 2);
   other.get();

@@ -4,8 +4,8 @@
 #include <array>
 #include <cmath>
 #include <future>
-#include <thread>
 
+#include "retarget/base/threads.hpp"
 #include "retarget/networks/linear_layer.hpp"
 #include "retarget/pipeline/human_rest.hpp"
 
@@ -280,7 +280,7 @@ SurfaceValues DeformationForward::evaluate(const Points& points, const Joints& j
         for (size_t i = 0; i < chunk.size(); ++i) add(chunk[i], static_cast<Eigen::Index>(i), b);
       }
     };
-    if (rows.size() <= 16 * kChunk || std::thread::hardware_concurrency() < 2) return every_other(0, 1);
+    if (rows.size() <= 16 * kChunk || usable_threads() < 2) return every_other(0, 1);
     auto other = std::async(std::launch::async, every_other, 1, 2);
     every_other(0, 2);
     other.get();

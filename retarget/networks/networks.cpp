@@ -161,6 +161,9 @@ void prepare_environment(bool trains) {
   setenv("OMP_WAIT_POLICY", "PASSIVE", 0);
   setenv("OMP_NUM_THREADS", std::to_string(trains ? 1 : inference_threads()).c_str(), 0);
   clamp_threads();
+  for (const char* variable : {"UNDERSTUDY_WEIGHTS", "UNDERSTUDY_PLUGIN"})
+    if (const char* path = std::getenv(variable); path && *path != '\0')
+      setenv(variable, fs::absolute(path).c_str(), 1);
 }
 
 std::string weights_folder(const NetworkOptions& options) {

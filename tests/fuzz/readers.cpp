@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "app/cli/batch_job.hpp"
 #include "app/cli/report.hpp"
 #include "app/run/case_folder.hpp"
 #include "app/session/commands.hpp"
@@ -339,6 +340,13 @@ void splits(const std::string& bytes) {
   read_split(std::filesystem::path(file.path()).parent_path().string(), "dev");
 }
 
+void batch(const std::string& bytes) {
+  static const std::vector<app::BatchCommand> commands = app::batch_commands();
+  for (const app::BatchJob& job : app::parse_manifest(bytes, "x.jsonl", commands))
+    must(app::is_plain_name(job.id) && !app::to_json(job).dump(-1, ' ', true).empty(),
+         "jobs can be recorded");
+}
+
 void report_rows(const std::string& bytes) {
   app::read_report_plan(ScratchFile("rows.json", bytes).path());
 }
@@ -510,6 +518,7 @@ std::vector<Reader> all_readers() {
                              {"poses", poses, declared_by_poses},
                              {"pose_arrays", pose_arrays, declared_by_zip},
                              {"case", test_case, text_size},
+                             {"batch", batch, declared_by_table},
                              {"splits", splits, text_size},
                              {"report_rows", report_rows, text_size},
                              {"settings", settings, text_size}};
