@@ -68,7 +68,7 @@ void check_method(const DiscoverOptions& options) {
   const std::string wrong = failure_of([&] { check_search(search); });
   US_CHECK(wrong.empty(), "--kind: ", wrong);
   US_CHECK(!is_network || search.most == 0, "--method ", search.method,
-           " finds as many bones as its kind has: --parts does not apply");
+           " finds as many bones as move: --parts does not apply");
 }
 
 DiscoveryOptions discovery_options(const DiscoverOptions& options, Progress& progress) {

@@ -14,7 +14,7 @@ namespace understudy::app {
 constexpr int kMostBones = 300;  ///< that may be asked for
 
 struct BoneSearch {
-  int most = 0;  ///< bones at most; 0: as many as the motion shows. A method with a network has its kind's
+  int most = 0;  ///< bones at most; 0: as many as the motion shows, and by methods with a network
   std::string method = rig_methods().front().name;  ///< one of rig_methods()
   std::string kind{};  ///< of the body, one of kBodyKinds, where the method has a network
 };

@@ -106,6 +106,7 @@ class Discovery {
   SurfaceTracks tracks_;
   RigidParts parts_;
   PartTree tree_;
+  std::vector<int> keypoint_of_point_;  // of the surface, as the network sees it; empty: no network
   FittedSurface surface_;
   std::vector<BoneMotions> bones_;  // [key frames]
   std::mutex reporting_;
@@ -176,11 +177,8 @@ void Discovery::start_from_network() {
   KeypointStart start = start_from_keypoints(frames_, most_open(), kNodes, *options_.keypoints);
   tracks_ = std::move(start.tracks);
   parts_ = std::move(start.parts);
-  tree_ = part_tree_of_kind(tracks_, parts_, options_.keypoints->parents());
-  for (int j = 0; j < tree_.rig.count(); ++j) {
-    const auto at = static_cast<size_t>(j);
-    tree_.rig.joints[at].rest = start.places.row(tree_.part_of_bone[at]).transpose();
-  }
+  keypoint_of_point_ = parts_.of_point;
+  tree_ = tree_of_keypoints(start.places, options_.keypoints->parents());
   show_parts();
 }
 
@@ -193,14 +191,9 @@ DiscoveredRig Discovery::at_rest() {
 }
 
 void Discovery::find_bones() {
-  if (options_.keypoints) {
-    refit(tracks_, parts_);
-    tree_ = part_tree_of_kind(tracks_, parts_, options_.keypoints->parents());
-  } else {
-    parts_ = find_rigid_parts(frames_, tracks_, options_.parts);
-    tree_ = find_part_tree(tracks_, parts_);
-    add_turntables(tracks_, parts_, tree_, options_.parts);
-  }
+  parts_ = find_rigid_parts(frames_, tracks_, options_.parts);
+  tree_ = find_part_tree(tracks_, parts_);
+  add_turntables(tracks_, parts_, tree_, options_.parts);
   bind_points();
   bones_.assign(frames_.size(), BoneMotions(tree_.part_of_bone.size()));
   for (size_t t = 0; t < frames_.size(); ++t)
@@ -359,7 +352,8 @@ DiscoveredRig Discovery::run() {
   report("Bones", kTrackedAgain);
   fit_all(kFirmJoints);
   find_joints_again();
-  if (!options_.keypoints) drop_still_bones();
+  drop_still_bones();
+  if (options_.keypoints) name_after_keypoints(keypoint_of_point_, surface_.skin, tree_.rig);
   draw_joints_inside(frames_[static_cast<size_t>(tracks_.rest_frame)], tracks_.graph, tree_.rig);
   report("Bones", (kTrackedAgain + kBonesEnd) / 2);
   fit_all(kRigidJoints);

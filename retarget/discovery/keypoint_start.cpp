@@ -62,6 +62,10 @@ std::vector<int> owners_of(const Points& points, const FoundKeypoints& found) {
   return owner;
 }
 
+std::string keypoint_name(int k) {
+  return "keypoint " + std::to_string(k + 1);
+}
+
 }  // namespace
 
 KeypointStart start_from_keypoints(const std::vector<ThinnedFrame>& frames, int rest_frame, int nodes,
@@ -91,6 +95,39 @@ KeypointStart start_from_keypoints(const std::vector<ThinnedFrame>& frames, int 
     start.tracks.motions.push_back(std::move(motions));
   }
   return start;
+}
+
+PartTree tree_of_keypoints(const Points& places, const std::vector<int>& parents) {
+  PartTree tree;
+  std::vector<int> bone(parents.size(), -1);
+  const auto add = [&](size_t k) {
+    const int parent = parents[k] < 0 ? -1 : bone[static_cast<size_t>(parents[k])];
+    bone[k] = tree.rig.count();
+    tree.rig.joints.push_back({keypoint_name(static_cast<int>(k)), parent,
+                               parent < 0 ? JointKind::Free : JointKind::Ball,
+                               places.row(static_cast<Eigen::Index>(k)).transpose(), Vec3::UnitY()});
+    tree.part_of_bone.push_back(static_cast<int>(k));
+  };
+  for (size_t k = 0; k < parents.size(); ++k)
+    if (parents[k] < 0) add(k);
+  for (size_t at = 0; at < tree.part_of_bone.size(); ++at)
+    for (size_t k = 0; k < parents.size(); ++k)
+      if (parents[k] == tree.part_of_bone[at]) add(k);
+  return tree;
+}
+
+void name_after_keypoints(const std::vector<int>& keypoint_of_point, const SkinWeights& skin, Rig& rig) {
+  const int keypoints = 1 + *std::max_element(keypoint_of_point.begin(), keypoint_of_point.end());
+  RowMatrix shared = RowMatrix::Zero(rig.count(), keypoints);
+  const RowMatrix weights = skin.dense(rig.count());
+  for (size_t i = 0; i < keypoint_of_point.size(); ++i)
+    shared.col(keypoint_of_point[i]) += weights.row(static_cast<Eigen::Index>(i)).transpose();
+  for (int named = 0; named < std::min(rig.count(), keypoints); ++named) {
+    Eigen::Index bone, keypoint;
+    if (shared.maxCoeff(&bone, &keypoint) <= 0) return;
+    rig.joints[static_cast<size_t>(bone)].name = keypoint_name(static_cast<int>(keypoint));
+    shared.row(bone).setZero(), shared.col(keypoint).setZero();
+  }
 }
 
 }  // namespace understudy

@@ -17,4 +17,12 @@ struct KeypointStart {
 KeypointStart start_from_keypoints(const std::vector<ThinnedFrame>& frames, int rest_frame, int nodes,
                                    KeypointFinder& finder);
 
+/// The tree of a network's keypoints [K], each a part, as one frame shows them: joints at their places, free.
+/// `parents` [K], -1: the root.
+PartTree tree_of_keypoints(const Points& places, const std::vector<int>& parents);
+
+/// Names each bone after the keypoint that owns most of its surface; no two alike, and where there are more
+/// bones than keypoints the smallest keep their names. keypoint_of_point [N] of the surface that `skin` binds.
+void name_after_keypoints(const std::vector<int>& keypoint_of_point, const SkinWeights& skin, Rig& rig);
+
 }  // namespace understudy

@@ -205,38 +205,6 @@ bool stands_still(const std::vector<RigidMotion>& motions, const Vec3& at, float
   });
 }
 
-PartTree part_tree_of_kind(const SurfaceTracks& tracks, const RigidParts& parts,
-                           const std::vector<int>& parents) {
-  const std::map<Pair, Seam> seams = find_seams(tracks, parts);
-  const float size = box_diagonal(tracks.graph.points);
-  const auto place = [&](int part) { return centre_of(tracks.graph.points, parts.of_point, part); };
-  PartTree tree;
-  std::vector<int> bone(parents.size(), -1);
-  const auto add = [&](int part, int parent) {
-    RigJoint joint{"keypoint " + std::to_string(part + 1), -1, JointKind::Free, place(part), Vec3::UnitY()};
-    if (parent >= 0) {
-      const auto seam = seams.find({std::min(part, parent), std::max(part, parent)});
-      const Vec3 between = seam != seams.end() ? seam->second.middle() : (place(part) + place(parent)) / 2;
-      const PartJoint found =
-          find_joint(parts.motions[static_cast<size_t>(parent)], parts.motions[static_cast<size_t>(part)],
-                     between, parts.noise_m, size);
-      joint.parent = bone[static_cast<size_t>(parent)];
-      joint.kind = found.kind == JointKind::Hinge ? JointKind::Hinge : JointKind::Ball;
-      joint.rest = found.rest;
-      joint.axis = found.axis;
-    }
-    bone[static_cast<size_t>(part)] = tree.rig.count();
-    tree.rig.joints.push_back(joint);
-    tree.part_of_bone.push_back(part);
-  };
-  for (size_t k = 0; k < parents.size(); ++k)
-    if (parents[k] < 0) add(static_cast<int>(k), -1);
-  for (size_t at = 0; at < tree.part_of_bone.size(); ++at)
-    for (size_t k = 0; k < parents.size(); ++k)
-      if (parents[k] == tree.part_of_bone[at]) add(static_cast<int>(k), parents[k]);
-  return tree;
-}
-
 PartTree find_part_tree(const SurfaceTracks& tracks, RigidParts& parts) {
   while (parts.count() > 1 && join_fixed(tracks, parts)) refit(tracks, parts);
   const std::vector<Link> tree = spanning_tree(links_of(tracks, parts), parts.count());

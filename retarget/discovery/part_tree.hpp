@@ -33,9 +33,5 @@ struct PartTree {
 /// else the part from which the others are fewest steps away, weighted by their size. Parts that hardly
 /// move against each other become one: `parts` then has fewer.
 PartTree find_part_tree(const SurfaceTracks& tracks, RigidParts& parts);
-/// The tree that a kind of body has, whatever moves: `parents` [parts], -1: the root. Bones that do not move
-/// here have joints as free as any.
-PartTree part_tree_of_kind(const SurfaceTracks& tracks, const RigidParts& parts,
-                           const std::vector<int>& parents);
 
 }  // namespace understudy

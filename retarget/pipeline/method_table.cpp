@@ -58,8 +58,8 @@ const MethodChoices& rig_methods() {
       {"parts", "Parts", "rigid parts",
        "what moves as one in the scans becomes a bone, in anything that moves enough", nullptr},
       {"slots", "Slots", "a kind's keypoints",
-       "a network's keypoints become bones, the same in every body of a kind that it knows, and one scan is "
-       "enough",
+       "a network's keypoints, the same in every body of a kind that it knows, tell where parts go however "
+       "fast, and name their bones; one scan is enough",
        "marionette_slots"},
       {"paper", "Paper (small)", "paper 3's keypoints, trained small",
        "the keypoints and the tree of paper 3's own network, on a coarser grid with fewer channels than the "

@@ -97,7 +97,7 @@ TEST_F(Bones, AreFoundWithTheirElbowAndOpenedAgainTheSame) {
   EXPECT_EQ(rig(studio).joints[1].name, "forearm");
 }
 
-TEST_F(Bones, FoundBySlotsAreTheKindsKeypointsAndAreOpenedAgainTheSame) {
+TEST_F(Bones, FoundBySlotsAreNamedAfterKeypointsAndAreOpenedAgainTheSame) {
   std::shared_ptr<const DiscoveredRig> found;
   {
     Studio studio(with_keypoints(services()));
@@ -107,8 +107,8 @@ TEST_F(Bones, FoundBySlotsAreTheKindsKeypointsAndAreOpenedAgainTheSame) {
     studio.wait_idle();
     found = studio.session().bones.rig;
     ASSERT_TRUE(found) << studio.session().bones.problem;
-    ASSERT_EQ(rig(studio).count(), 3);
-    EXPECT_EQ(rig(studio).joints[2].name, "keypoint 3");
+    ASSERT_EQ(rig(studio).count(), 2);
+    EXPECT_GE(bone_named(rig(studio), "keypoint 1"), 0);
     EXPECT_EQ(found->found.motion.poses.size(), static_cast<size_t>(understudy::kFrames));
     studio.run("edit.undo");
     studio.tick(0);
@@ -124,7 +124,7 @@ TEST_F(Bones, FoundBySlotsAreTheKindsKeypointsAndAreOpenedAgainTheSame) {
   studio.wait_idle();
   ASSERT_TRUE(studio.session().bones.rig);
   EXPECT_TRUE(same_rigs(*found, *studio.session().bones.rig));
-  EXPECT_EQ(rig(studio).joints[2].name, "keypoint 3");
+  EXPECT_GE(bone_named(rig(studio), "keypoint 1"), 0);
   studio.run("bones.find", {"auto"});
   EXPECT_EQ(studio.session().document.bones.search.method, "parts") << "so many bones are of parts";
 }

@@ -34,7 +34,7 @@ TEST_F(BonesPanel, AsksForAKindsKeypoints) {
   panel("bones");
   click("bones.method.1");
   frame(2);
-  EXPECT_FALSE(shown("bones.auto")) << "a kind has its number of bones";
+  EXPECT_FALSE(shown("bones.auto")) << "as many as move";
   expect_click("bones.find", {"bones.find slots person"});
   click("bones.body");
   frame(2);
