@@ -71,7 +71,11 @@ class LiveFrames final : public ScanSource::Frames {
   /// None: it is one too many.
   std::optional<ScanFrame> framed(const ReceivedFrame& received) {
     heard_ = Clock::now();
-    if (!std::exchange(started_, true)) clock_.start(heard_), first_ = heard_;
+    if (!std::exchange(started_, true)) {
+      clock_.start(heard_);
+      first_ = heard_;
+      dropped_before_ = receiver_.dropped();
+    }
     tell_rate();
     const auto number = clock_.number_at(heard_);
     if (!number) {
@@ -113,7 +117,7 @@ class LiveFrames final : public ScanSource::Frames {
     const double passed = seconds_since(first_);
     if (told_ || passed < kMeasured_s) return;
     told_ = true;
-    const double rate = static_cast<double>(came_ - 1 + receiver_.dropped()) / passed;
+    const double rate = static_cast<double>(came_ - 1 + receiver_.dropped() - dropped_before_) / passed;
     if (std::abs(rate - options_.fps) > 0.1 * options_.fps)
       log::warn(receiver_.address() +
                 printed(": comes at %.1f frames/s and is put on a clock of %g; --fps changes it", rate,
@@ -125,6 +129,7 @@ class LiveFrames final : public ScanSource::Frames {
   LiveClock clock_;
   Moment heard_, first_{};  // the last frame, and the first one
   bool started_ = false, told_ = false;
+  int64_t dropped_before_ = 0;                   // the first one was asked for
   int64_t pause_ = 0, came_ = 0, too_many_ = 0;  // missing ones in a row; frames
   log::Tally problems_;
 };
