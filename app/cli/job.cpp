@@ -221,6 +221,7 @@ void run_job(const JobOptions& options) {
 }
 
 void run_jobs_of_all(const JobOptions& options) {
+  check_source_options(options.source);  // a live stream cannot be gone through first
   NetworkParts seeing;
   seeing.extractor = true;
   const Networks networks = nn::load_networks(network_options(options.how), seeing);
