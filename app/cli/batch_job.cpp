@@ -36,7 +36,8 @@ constexpr BatchVerb kVerbs[] = {{"retarget", declare_retarget, false}, {"export"
 
 /// What a line says elsewhere, and what no job of a batch can be: endless, or without a file.
 const std::set<std::string>& no_options_of_lines() {
-  static const std::set<std::string> names = {"source", "target", "help", "follow", "print-map"};
+  static const std::set<std::string> names = {"source", "target", "help", "follow", "print-map",
+                                              "listen", "stream", "wait", "send"};
   return names;
 }
 

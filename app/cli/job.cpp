@@ -9,6 +9,8 @@
 #include "app/run/evaluator.hpp"
 #include "app/run/exports.hpp"
 #include "app/run/interrupt.hpp"
+#include "app/run/live_figures.hpp"
+#include "app/run/pose_output.hpp"
 #include "app/run/report.hpp"
 #include "retarget/base/error.hpp"
 #include "retarget/base/log.hpp"
@@ -26,6 +28,7 @@ struct Running {
   std::unique_ptr<Retargeter> retargeter;
   std::unique_ptr<RetargetedSource> retargeted;
   std::unique_ptr<MotionOutput> output;  // null: no animation wanted
+  std::optional<PoseOutput> sent;        // none: nothing is sent
   std::optional<TempoStream> tempo;      // of the output
   bool has_style = false;                // or a tempo of its own
   std::vector<Pose> shown;               // at that tempo, where a report tells how it is performed
@@ -33,6 +36,7 @@ struct Running {
   std::optional<Evaluator> evaluator;
   Latency latency;
   DoubtTally doubt;
+  LiveFigures live;
   log::Tally repeats;          // of the last pose
   std::vector<float> doubt_m;  // of each frame that was made, 0 where it was captured
 };
@@ -56,15 +60,21 @@ render::SheetMoment moment_of(const RetargetedFrame& frame, double fps, const Me
 }
 
 /// One line for each frame as it is finished, for programs that follow along.
-void tell_live(const RetargetedFrame& frame) {
+void tell_live(const RetargetedFrame& frame, LiveFigures& figures) {
+  const double ms = figures.add(frame.scan);
   const Vec3& root = frame.result.pose.root;
-  std::printf("frame %lld root %.4f %.4f %.4f %s\n", static_cast<long long>(frame.scan.number), root.x(),
+  std::printf("frame %lld root %.4f %.4f %.4f %s", static_cast<long long>(frame.scan.number), root.x(),
               root.y(), root.z(), frame.result.flagged ? "flagged" : "good");
+  if (frame.scan.live)
+    std::printf(" latency_ms %.2f dropped %lld", ms, static_cast<long long>(frame.scan.live->dropped));
+  std::puts("");
   std::fflush(stdout);
 }
 
-void write(Running& job, const std::vector<PerformedFrame>& frames) {
+void write(Running& job, const std::vector<PerformedFrame>& frames,
+           const std::optional<LiveMoment>& live = {}) {
   for (const PerformedFrame& frame : frames) {
+    if (job.sent) job.sent->push(frame, live);
     if (job.has_style && job.evaluator) job.shown.push_back(frame.pose);
     if (job.output)
       job.output->push({frame.pose, source_joints(frame), &frame.vertices, frame.observed.doubt_m});
@@ -80,7 +90,8 @@ void take_frame(Running& job, const RetargetedFrame& frame, bool live) {
     job.repeats.warn("frame " + std::to_string(frame.scan.number) +
                      " repeats the last pose: " + result.reason);
   job.doubt_m.push_back(result.observed.doubt_m);
-  write(job, job.tempo->push(result));
+  write(job, job.tempo->push(result), frame.scan.live);
+  if (live) tell_live(frame, job.live);
   if (job.moments && job.moments->wanted(frame.index))
     job.moments->add(frame.index, moment_of(frame, fps, job.character->target.mesh));
   if (job.skeletons && job.skeletons->wanted(frame.index))
@@ -88,7 +99,6 @@ void take_frame(Running& job, const RetargetedFrame& frame, bool live) {
   if (job.evaluator)
     job.evaluator->push({&result.vertices, &result.joints, &result.pose.local, &source_joints(result),
                          nullptr, frame.scan.usable ? &frame.scan.mesh : nullptr, nullptr, result.limbs});
-  if (live) tell_live(frame);
 }
 
 Json report_of(const JobOptions& options, const Running& job) {
@@ -111,7 +121,17 @@ Json report_of(const JobOptions& options, const Running& job) {
   report["metrics"] = to_json(metrics);
   report["ms"] = to_json(job.latency, 0.5);
   report["ms_p95"] = to_json(job.latency, 0.95);
+  if (job.live.any())
+    report["live"] = {{"dropped", job.live.dropped()},
+                      {"capture_to_wire_ms", job.live.ms().quantile(0.5)},
+                      {"capture_to_wire_ms_p95", job.live.ms().quantile(0.95)},
+                      {"capture_to_wire_ms_most", job.live.most_ms()}};
   return report;
+}
+
+bool makes_files(const JobOptions& options) {
+  return !(options.out.empty() && options.report.empty() && options.preview.empty() &&
+           options.skeletons.empty());
 }
 
 Running start(const JobOptions& options) {
@@ -121,12 +141,17 @@ Running start(const JobOptions& options) {
   networks = networks_for(std::move(networks), *job.character, on_their_rig(options.target, *job.character));
   job.source = open_source(options.source);
   log::info(std::string("inference: one thread, ") + nn::kernels().name + " kernels");
-  job.retargeter = std::make_unique<Retargeter>(std::move(networks), retarget_options(options.how));
+  RetargetOptions how = retarget_options(options.how);
+  how.vertices = makes_files(options);  // an engine has a surface of its own
+  job.retargeter = std::make_unique<Retargeter>(std::move(networks), how);
   job.retargeter->set_target(job.character->target);
   job.retargeted = std::make_unique<RetargetedSource>(*job.source, *job.retargeter, options.source,
                                                       source_tools(options.how));
   job.has_style = options.how.method.style.any() || options.tempo.any();
   job.tempo.emplace(options.tempo, job.character->target.joints, job.source->fps());
+  if (!options.send.empty())
+    job.sent.emplace(PoseOutputOptions{options.send, job.source->fps(), !is_live(options.source)},
+                     job.character->target);
   if (!options.preview.empty()) job.moments.emplace(job.source->count());
   if (!options.skeletons.empty()) job.skeletons.emplace(job.source->count(), kSkeletonMoments);
   if (!options.report.empty()) job.evaluator.emplace(job.source->fps(), nullptr, &job.character->target.mesh);
@@ -135,7 +160,8 @@ Running start(const JobOptions& options) {
     ExportBody body{job.character, job.retargeter->performer().deformer(), {}};
     body.file.rights = style_rights(options.how.method.style);
     body.poses = options.poses;
-    if (format.is_pictures) body.file.progress = [](float) { check_interrupt("during the export"); };
+    if (format.is_pictures && !is_live(options.source))
+      body.file.progress = [](float) { check_interrupt("during the export"); };
     body.file.their_rig = format.is_character && on_their_rig(options.target, *job.character);
     job.output = open_export(options.out, format, body, file_name(options.source.path), job.source->fps());
   }
@@ -155,6 +181,7 @@ void finish(const JobOptions& options, Running& job) {
   if (job.moments) write_preview(options.preview, job.moments->take(), title);
   if (job.skeletons)
     write_preview(options.skeletons, job.skeletons->take(), file_name(options.source.path), kSkeletonColumns);
+  if (job.live.any()) log::info(options.source.path + ": " + job.live.sentence());
   std::fprintf(stderr, "%s", job.latency.table().c_str());
   for (const std::string& path : {options.out, options.report, options.preview, options.skeletons})
     if (!path.empty()) log::info("wrote " + path);
@@ -179,16 +206,18 @@ void run_job(const JobOptions& options) {
     check_export(options.out, format);
   }
   for (const std::string& path : {options.report, options.preview, options.skeletons}) check_writable(path);
+  const bool live = is_live(options.source);  // whose end an interrupt is: what came is kept
+  for (const std::string& address : options.send) send_address(address);
   Running job = start(options);
   Progress progress(file_name(options.source.path) + " -> " + file_name(options.target.path),
                     job.source->count().value_or(0), options.progress_lines);
   while (const auto frame = job.retargeted->next()) {
     take_frame(job, *frame, options.source.follow);
     progress.step(frame->index + 1);
-    check_interrupt("after frame " + std::to_string(frame->scan.number));
+    if (!live) check_interrupt("after frame " + std::to_string(frame->scan.number));
   }
   progress.finish();
-  check_interrupt("after " + std::to_string(job.retargeted->frames()) + " frames");
+  if (!live) check_interrupt("after " + std::to_string(job.retargeted->frames()) + " frames");
   job.retargeted->check_used();
   if (job.retargeted->frames() == 1)
     log::warn(options.source.path + ": holds only one frame: the result is a pose, not a motion");
@@ -196,6 +225,7 @@ void run_job(const JobOptions& options) {
 }
 
 void run_jobs_of_all(const JobOptions& options) {
+  check_source_options(options.source);  // a live stream cannot be gone through first
   NetworkParts seeing;
   seeing.extractor = true;
   const Networks networks = nn::load_networks(network_options(options.how), seeing);

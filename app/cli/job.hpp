@@ -15,13 +15,14 @@ struct JobOptions {
   TargetOptions target;
   MethodOptions how;
   TempoChoice tempo;
-  std::string out;              ///< empty: none
-  std::string format;           ///< of it; empty: by its suffix
-  PoseChoice poses;             ///< of pose pictures
-  std::string report;           ///< .json; empty: none
-  std::string preview;          ///< .png; empty: none
-  std::string skeletons;        ///< .png of up to 60 frames with the extracted skeleton in each; empty: none
-  bool progress_lines = false;  ///< new lines of progress even on a terminal: another job writes there too
+  std::string out;        ///< empty: none
+  std::string format;     ///< of it; empty: by its suffix
+  PoseChoice poses;       ///< of pose pictures
+  std::string report;     ///< .json; empty: none
+  std::string preview;    ///< .png; empty: none
+  std::string skeletons;  ///< .png of up to 60 frames with the extracted skeleton in each; empty: none
+  std::vector<std::string> send;  ///< addresses of engines, see PoseSender
+  bool progress_lines = false;    ///< new lines of progress even on a terminal: another job writes there too
 };
 
 /// Does the job and reports progress. Files appear whole at the end, or not at all. Throws Error.

@@ -19,6 +19,7 @@
 #include "retarget/formats/mesh_reader.hpp"
 #include "retarget/formats/npz.hpp"
 #include "retarget/geometry/ground_finder.hpp"
+#include "retarget/live/live_frames.hpp"
 #include "retarget/math/rotation.hpp"
 #include "retarget/motion/clip.hpp"
 #include "retarget/motion/read_motion.hpp"
@@ -76,7 +77,8 @@ FeetCheck feet_check(const std::function<Extraction(const Mesh&)>& look) {
 class ScanFiles final : public Source {
  public:
   explicit ScanFiles(const SourceOptions& options)
-      : ScanFiles(options, ScanSource(options.path, scan_options(options))) {}
+      : ScanFiles(options, is_live(options) ? ScanSource(live_frames(live_options(options)))
+                                            : ScanSource(options.path, scan_options(options))) {}
 
   std::optional<SourceFrame> next() override {
     std::optional<ScanFrame> scan = scans_.next();
@@ -138,6 +140,16 @@ class ScanFiles final : public Source {
     result.follow = options.follow;
     result.times = options.times;
     result.fps = options.fps;
+    result.cancelled = interrupted;
+    if (options.wait_s > 0) result.timeout_s = options.wait_s;
+    return result;
+  }
+  static LiveOptions live_options(const SourceOptions& options) {
+    LiveOptions result;
+    result.address = options.path;
+    if (!options.stream.empty()) result.format = stream_format(options.stream);
+    if (options.fps > 0) result.fps = options.fps;
+    result.wait_s = options.wait_s;
     result.cancelled = interrupted;
     return result;
   }
@@ -369,6 +381,15 @@ void check_scan_options(const SourceOptions& options) {
            ": markers (--markers) are for scans that are completed (--complete)");
 }
 
+void check_live_options(const SourceOptions& options) {
+  US_CHECK(options.follow, options.path, ": is a live stream, which passes once; retarget takes one in");
+  US_CHECK(options.motion.empty() && !options.as_scan, options.path,
+           ": is a live stream of scans, there is no body or skeleton");
+  US_CHECK(options.person != "all", options.path,
+           ": is a live stream, one person of it is performed (--person)");
+  check_scan_options(options);
+}
+
 void check_not_completed(const SourceOptions& options) {
   US_CHECK(options.complete == 0 && options.markers.empty(), options.path,
            ": is a motion already, only scans are completed (--complete, --markers)");
@@ -465,6 +486,10 @@ std::string name_of(const SourceOptions& options) {
   return file_name(options.motion.empty() ? options.path : options.motion);
 }
 
+bool is_live(const SourceOptions& options) {
+  return !options.blend && is_live_address(options.path);
+}
+
 SourceOptions without_people(SourceOptions options) {
   options.person.clear();
   options.people.clear();
@@ -481,9 +506,11 @@ int person_number(const std::string& person) {
 }
 
 void check_source_options(const SourceOptions& options) {
-  if (is_keypoint_source(options)) return check_keypoint_options(options);
+  if (!is_live(options) && is_keypoint_source(options)) return check_keypoint_options(options);
   check_no_picture(options);
   person_number(options.person);
+  if (is_live(options)) return check_live_options(options);
+  US_CHECK(options.stream.empty(), options.path, ": only a live stream has a form (--stream)");
   if (options.blend) return check_blend_options(options);
   if (!options.motion.empty()) return check_body_options(options);
   if (is_motion_file(options.path)) return check_skeletal_options(options);
@@ -494,6 +521,7 @@ void check_source_options(const SourceOptions& options) {
 
 std::unique_ptr<Source> open_source(const SourceOptions& options, MotionBlender* blender) {
   check_source_options(options);
+  if (is_live(options)) return std::make_unique<ScanFiles>(options);
   if (is_keypoint_source(options)) return open_keypoint_source(options);
   if (options.blend) {
     MotionBlender plain;

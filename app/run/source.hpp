@@ -34,7 +34,7 @@ struct SourceOptions {
   std::vector<float> betas;  ///< of the performing body; empty: those in the motion's file
   double fps = 0;            ///< 0: the motion's own, as `times` tell, or 30
   ImportOptions import;
-  bool follow = false;    ///< the folder is still being written
+  bool follow = false;    ///< the folder is still being written, or the stream is live
   bool as_scan = false;   ///< a skeletal motion's surface is sampled as a scan
   std::string clip;       ///< of a skeletal motion's animations, by name or number from 1; empty: the longest
   BoneChoices bones;      ///< of a skeletal motion, as the user wants them
@@ -56,11 +56,15 @@ struct SourceOptions {
   std::optional<double> pitch{};         ///< how far the camera looks down, degrees; none: as the poses tell
   float smoothing = 1;                   ///< of their points, see KeypointFilterOptions
   std::vector<TrackEdit> point_edits{};  ///< by hand
+  // Of a live stream, whose path is an address (see is_live):
+  std::string stream{};  ///< how its clouds follow each other, of kStreamFormatNames; empty: auto
+  double wait_s = 0;  ///< it ends when no frame came for so long, as a folder that is followed; 0: as usual
   ScanEdits
       edits{};  ///< of each frame, before anybody is looked for; documents have theirs beside the source
 };
 constexpr Within<float> kFlatSmoothing{0, 4};
-/// What documents keep of it: `follow`, `quiet`, `truth`, `made` and `edits` belong to one run.
+/// What documents keep of it: `follow`, `quiet`, `truth`, `made`, `stream`, `wait_s` and `edits` belong to one
+/// run.
 template <class V, class S>
 FieldsOf<S, SourceOptions> fields(V& visit, S& source) {
   visit("path", source.path, FilePath{});
@@ -89,6 +93,8 @@ FieldsOf<S, SourceOptions> fields(V& visit, S& source) {
 SourceOptions blended_source(BlendRecipe blend);
 /// What a source is called, for people: the name of its file, "walk - run" of a blend.
 std::string name_of(const SourceOptions& options);
+/// Whether the path is no file but where a stream comes in: "tcp://HOST:PORT", or "-" for standard input.
+bool is_live(const SourceOptions& options);
 /// The options without those that say who of the scans is taken: scans that are read by equal ones are the
 /// same.
 SourceOptions without_people(SourceOptions options);

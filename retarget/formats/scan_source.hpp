@@ -1,16 +1,24 @@
 // A scan sequence, frame by frame: a folder, a list, one array file, or a single mesh.
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <functional>
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "retarget/geometry/mesh.hpp"
 
 namespace understudy {
+
+/// Of a frame that came live.
+struct LiveMoment {
+  std::chrono::steady_clock::time_point captured;  ///< its first byte was here
+  int64_t dropped = 0;                             ///< frames so far that newer ones overtook
+};
 
 /// One frame as it came, in the file's own units and axes.
 struct ScanFrame {
@@ -20,6 +28,7 @@ struct ScanFrame {
   bool usable = true;     ///< false: it could not be read or has no finite point, `mesh` may be empty
   std::string problem;    ///< why it is not usable, one sentence
   bool is_empty = false;  ///< it was read, but has no finite point
+  std::optional<LiveMoment> live{};  ///< none: it comes from a file, or nothing came
 };
 
 struct ScanSourceOptions {
@@ -77,6 +86,8 @@ class ScanSource {
   /// equally frequent, or the times cannot be those of the scans.
   explicit ScanSource(const std::string& path, const ScanSourceOptions& options = {});
   explicit ScanSource(const std::vector<std::string>& files);
+  /// Of another kind; never null.
+  explicit ScanSource(std::unique_ptr<Frames> frames) : frames_(std::move(frames)) {}
 
   /// The next frame; none at the end. A frame that cannot be read comes back with usable = false; only a
   /// sequence that is broken as a whole (an array that ends early, a followed folder that never gets a frame)
