@@ -105,6 +105,14 @@ class Values {
              ": a list is longer than the file");
     return static_cast<size_t>(count);
   }
+  /// Rows that are all so long, of a binary body, at once; null where they are not.
+  const char* rows(const Element& element, size_t row_size) {
+    if (ascii_) return nullptr;
+    const char* const first = body_.data() + at_;
+    at_ += row_size * static_cast<size_t>(element.rows);  // check_rows knows that they are there
+    return first;
+  }
+  bool swapped() const { return swap_; }
   // Throws when so many rows cannot be in what is left: counts are checked before anything is allocated for
   // them.
   void check_rows(const Element& element) const {
@@ -176,17 +184,54 @@ float colour_scale(NumberType type) {
   return size_of(type) == 1 ? 1 / 255.0f : 1 / 65535.0f;
 }
 
+/// Bytes of each row; 0 where lists make them differ.
+size_t row_size_of(const Element& element) {
+  size_t size = 0;
+  for (const Property& p : element.properties) {
+    if (p.count) return 0;
+    size += size_of(p.type);
+  }
+  return size;
+}
+
+/// One property of all rows, `row_size` bytes apart.
+template <class Column>
+void read_column(const char* at, size_t row_size, NumberType type, bool swap, Column column) {
+  const bool plain = type == NumberType::F32 && !swap;  // what nearly all files have
+  for (Eigen::Index row = 0; row < column.rows(); ++row, at += row_size)
+    column[row] = plain ? load<float>(at, false) : narrow(load_number(type, at, swap));
+}
+
+/// As read_rows, a column at a time; false where rows are not all as long.
+bool read_columns(const Element& element, const VertexLayout& layout, Values& values, Mesh& mesh) {
+  const size_t row_size = row_size_of(element);
+  const char* const first = row_size > 0 ? values.rows(element, row_size) : nullptr;
+  if (!first) return false;
+  size_t offset = 0;
+  for (size_t i = 0; i < element.properties.size(); ++i) {
+    const NumberType type = element.properties[i].type;
+    const int slot = layout.slot[i];
+    if (slot >= 0 && slot < 3)
+      read_column(first + offset, row_size, type, values.swapped(), mesh.vertices.col(slot));
+    else if (slot >= 3 && layout.has_colours)
+      read_column(first + offset, row_size, type, values.swapped(), mesh.colors.col(slot - 3));
+    offset += size_of(type);
+  }
+  return true;
+}
+
 void read_vertices(const Element& element, Values& values, Mesh& mesh, const std::string& source) {
   const VertexLayout layout = vertex_layout(element, source);
   US_CHECK(mesh.vertices.rows() == 0, source, ": has two lists of vertices");
   US_CHECK(element.rows < (int64_t{1} << 31), source, ": has more than 2 billion vertices");
   mesh.vertices.resize(element.rows, 3);
   if (layout.has_colours) mesh.colors.resize(element.rows, 3);
-  read_rows(element, values, [&](Eigen::Index row, size_t property, const std::vector<double>& numbers) {
-    const int slot = layout.slot[property];
-    if (slot >= 0 && slot < 3) mesh.vertices(row, slot) = narrow(numbers[0]);
-    if (slot >= 3 && layout.has_colours) mesh.colors(row, slot - 3) = narrow(numbers[0]);
-  });
+  if (!read_columns(element, layout, values, mesh))
+    read_rows(element, values, [&](Eigen::Index row, size_t property, const std::vector<double>& numbers) {
+      const int slot = layout.slot[property];
+      if (slot >= 0 && slot < 3) mesh.vertices(row, slot) = narrow(numbers[0]);
+      if (slot >= 3 && layout.has_colours) mesh.colors(row, slot - 3) = narrow(numbers[0]);
+    });
   if (!layout.has_colours) return;
   for (int c = 0; c < 3; ++c)
     mesh.colors.col(c) *= colour_scale(element.properties[layout.property[3 + c]].type);
