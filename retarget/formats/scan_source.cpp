@@ -191,6 +191,7 @@ ScanFrame load_frame(const std::string& path, int64_t number) {
   frame.path = path;
   try {
     frame.mesh = read_mesh(path);
+    thin_cloud(frame.mesh, kMostScanPoints);
     frame.is_empty = finite_count(frame.mesh.vertices) == 0;
     US_CHECK(!frame.is_empty, path, ": has no ", frame.mesh.vertices.rows() > 0 ? "finite " : "", "points");
   } catch (const Error& error) {

@@ -20,6 +20,10 @@ struct LiveMoment {
   int64_t dropped = 0;                             ///< frames so far that newer ones overtook
 };
 
+/// Clouds of files have at most so many points: thinned while they are read, since nothing that follows gains
+/// by more.
+constexpr Eigen::Index kMostScanPoints = 200000;
+
 /// One frame as it came, in the file's own units and axes.
 struct ScanFrame {
   Mesh mesh;

@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "retarget/base/error.hpp"
+#include "retarget/base/rng.hpp"
 #include "retarget/geometry/point_tree.hpp"
 
 namespace understudy {
@@ -119,6 +120,24 @@ std::vector<int> far_apart(const Points& points, const std::vector<int>& of, int
   std::vector<int> chosen = farthest_points(points(of, Eigen::all), std::min<int>(count, of.size()));
   for (int& i : chosen) i = of[i];
   return chosen;
+}
+
+void thin_cloud(Mesh& scan, Eigen::Index most) {
+  if (!scan.is_cloud() || scan.vertices.rows() <= most) return;
+  const Eigen::Index finite = finite_count(scan.vertices);
+  if (finite <= most) return;
+  const int run = static_cast<int>((finite + most - 1) / most);
+  std::vector<Eigen::Index> kept;
+  kept.reserve(static_cast<size_t>(most));
+  Rng rng(0);  // no stripes where points come in rows
+  int left = rng.below(run), in_run = 0;
+  for (Eigen::Index i = 0; i < scan.vertices.rows(); ++i) {
+    if (finite < scan.vertices.rows() && !scan.vertices.row(i).allFinite()) continue;
+    if (in_run == left) kept.push_back(i);
+    if (++in_run == run) in_run = 0, left = rng.below(run);
+  }
+  scan.vertices = Points(scan.vertices(kept, Eigen::all));
+  if (scan.colors.rows() > 0) scan.colors = Points(scan.colors(kept, Eigen::all));
 }
 
 Points finite_points(const Points& points) {

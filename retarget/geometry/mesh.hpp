@@ -53,6 +53,10 @@ std::vector<int> farthest_points(const Points& points, int count, int first = 0)
 /// The same among the points `of`, from the first of them; at most `count`.
 std::vector<int> far_apart(const Points& points, const std::vector<int>& of, int count);
 
+/// Of a cloud with more than `most` finite points so many of them at most, with their colours, spread evenly
+/// over its order and in it: one of each run of points, the same ones for the same numbers. Others and meshes
+/// stay as they are.
+void thin_cloud(Mesh& scan, Eigen::Index most);
 /// The points without NaN and infinities, in their order.
 Points finite_points(const Points& points);
 /// How many points are finite.

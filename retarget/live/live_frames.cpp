@@ -95,6 +95,7 @@ class LiveFrames final : public ScanSource::Frames {
   void read(const StreamFrame& received, ScanFrame& frame) {
     try {
       frame.mesh = decode(received, frame.path);
+      thin_cloud(frame.mesh, kMostScanPoints);
       frame.is_empty = frame.mesh.vertices.rows() == 0;
       US_CHECK(!frame.is_empty, frame.path, ": has no points");
     } catch (const Error& error) {

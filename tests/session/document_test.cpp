@@ -270,10 +270,10 @@ const Changes& document_changes() {
       GenerationOptions();
   [[maybe_unused]] const auto& [between_first, between_last] = FramesBetween();
   [[maybe_unused]] const auto& [second_path, matches, second_clip] = SecondBody();
-  [[maybe_unused]] const auto& [path, motion, betas, fps, import, follow, as_scan, clip, source_bones, quiet,
-                                with_truth, person, times, complete, markers, made, people, recipe,
-                                point_order, picture_size, stature, view_fov, view_pitch, calm, point_edits,
-                                edits] = SourceOptions();
+  [[maybe_unused]] const auto& [path, motion, betas, fps, import, follow, stream, wait, as_scan, clip,
+                                source_bones, quiet, with_truth, person, times, complete, markers, made,
+                                people, recipe, point_order, picture_size, stature, view_fov, view_pitch,
+                                calm, point_edits, edits] = SourceOptions();
   [[maybe_unused]] const auto& [parts, cycles, coder] = BlendRecipe();
   [[maybe_unused]] const auto& [part_path, part_range, part_weight, part_checksum] = BlendPart();
   [[maybe_unused]] const auto& [range_first, range_last] = BlendRange();

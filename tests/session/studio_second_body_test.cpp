@@ -86,7 +86,7 @@ TEST_F(SecondBodyTest, ScansOfItAreSearchedAsTheFirstOnesWere) {
   write_arm("other.npz", understudy::kFrames, 1, 1200);
   perform(studio, "other.npz");
   ASSERT_TRUE(second(studio).performed) << second(studio).problem;
-  const Rig& other = second(studio).performed->rig;
+  const understudy::Rig& other = second(studio).performed->rig;
   ASSERT_EQ(other.count(), 2);
   EXPECT_GE(bone_named(other, "keypoint 1"), 0);
   for (int j = 0; j < 2; ++j) {
