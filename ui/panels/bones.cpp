@@ -179,12 +179,13 @@ std::string turned(const RigJoint& joint, const FoundBone& bone) {
 }
 
 void draw_table(const BonesDrawing& d) {
+  constexpr float kParentWidth = 47;
   const float line = ImGui::GetTextLineHeight() + 2 * ImGui::GetStyle().CellPadding.y;
   const float height = line * (static_cast<float>(std::min(d.rig().count(), 14)) + 1.6f);
   ImGui::PushStyleVar(ImGuiStyleVar_CellPadding, {d.ui().px(4), ImGui::GetStyle().CellPadding.y});
   Table table(d.ui(), "bones.bone",
               {{"Bone"},
-               {"Parent", 47},
+               {"Parent", kParentWidth},
                {"Kind", 36},
                {"Turns", 34, true},
                {"Off, mm", 44, true},
@@ -198,8 +199,9 @@ void draw_table(const BonesDrawing& d) {
     if (table.row(j == d.bones().selected))
       d.context.ask("bones.select", {j == d.bones().selected ? "none" : std::to_string(j)});
     color_chip(d.ui(), bone_color(j));
-    table.cell(joint.name);
-    table.cell(joint.parent < 0 ? "\u2013" : d.rig().joints[static_cast<size_t>(joint.parent)].name);
+    table.cell(cut_name(joint.name, ImGui::GetContentRegionAvail().x));  // their numbers tell them apart
+    const RigJoint* const parent = at_or_null(d.rig().joints, joint.parent);
+    table.cell(parent == nullptr ? "\u2013" : cut_name(parent->name, d.ui().px(kParentWidth)));
     table.cell(kJointKindNames[static_cast<size_t>(joint.kind)]);
     table.cell(turned(joint, bone));
     table.cell(bone.off_m < 0 ? "\u2013" : printed("%.1f", 1000 * static_cast<double>(bone.off_m)));
@@ -330,7 +332,8 @@ void draw_near(const BonesDrawing& d) {
   row_text(d.ui(), "Consistency", consistency_words(d));
   {
     const float line = ImGui::GetTextLineHeight() + 2 * ImGui::GetStyle().CellPadding.y;
-    Table table(d.ui(), "bones.near", {{"Joint"}, {"Nearest bone"}, {"mm", 44, true}, {"Same, %", 60, true}},
+    Table table(d.ui(), "bones.near",
+                {{"Joint", 84}, {"Nearest bone"}, {"mm", 38, true}, {"Same, %", 56, true}},
                 line * 12 + 0.6f * line);
     for (int i = 0; table.open() && i < ssize(steady); ++i) {
       const auto& [bone, share, apart_m] = steady[static_cast<size_t>(i)];
