@@ -21,7 +21,8 @@ class KeypointEvaluation {
   /// such finder.
   void add(const std::string& kind, const RigTruth& truth);
   /// By kinds: sc (paper 3, eq. 21) of the network's keypoints, sc_joints of the joints of the rigs found
-  /// with them, keypoints, how many of these are not faint on the mean, and frames. Null where nothing was noted.
+  /// with them, keypoints, how many of these are not faint on the mean, and frames. Null where nothing was
+  /// noted.
   Json summary() const;
 
  private:

@@ -21,7 +21,7 @@ class App;
 
 namespace understudy::app {
 
-/// What help calls the value of an option that is a path (or a word in place of one), and what `batch` knows it
+/// What help calls the value of an option that is a path (or a word in its place), and what `batch` knows it
 /// by: one that is read, one that is written.
 constexpr const char *kReadPath = "PATH", *kWrittenPath = "NEW-PATH";
 

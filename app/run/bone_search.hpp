@@ -1,4 +1,4 @@
-// How bones of anything are looked for: what a document, a command line and both bodies of a performance share.
+// How bones of anything are looked for: what a document, a command line and both bodies share.
 #pragma once
 
 #include <functional>

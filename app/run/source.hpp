@@ -63,8 +63,8 @@ struct SourceOptions {
       edits{};  ///< of each frame, before anybody is looked for; documents have theirs beside the source
 };
 constexpr Within<float> kFlatSmoothing{0, 4};
-/// What documents keep of it: `follow`, `quiet`, `truth`, `made`, `stream`, `wait_s` and `edits` belong to one
-/// run.
+/// What documents keep of it: `follow`, `quiet`, `truth`, `made`, `stream`, `wait_s` and `edits` belong to
+/// one run.
 template <class V, class S>
 FieldsOf<S, SourceOptions> fields(V& visit, S& source) {
   visit("path", source.path, FilePath{});

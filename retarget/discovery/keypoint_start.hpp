@@ -22,7 +22,7 @@ KeypointStart start_from_keypoints(const std::vector<ThinnedFrame>& frames, int 
 PartTree tree_of_keypoints(const Points& places, const std::vector<int>& parents);
 
 /// Names each bone after the keypoint that owns most of its surface; no two alike, and where there are more
-/// bones than keypoints the smallest keep their names. keypoint_of_point [N] of the surface that `skin` binds.
+/// bones than keypoints the smallest keep their names. keypoint_of_point [N]: of the surface of `skin`.
 void name_after_keypoints(const std::vector<int>& keypoint_of_point, const SkinWeights& skin, Rig& rig);
 
 }  // namespace understudy

@@ -9,7 +9,7 @@
 namespace understudy::training {
 
 constexpr int kVoxelWindow = 10;  ///< T, frames of a window (paper 3, table 3)
-/// Frames a second, the most: every second of AIST++'s 60 (table 4); other kinds' data of the paper, which are
+/// Frames a second, at most: every second of AIST++'s 60 (table 4); the paper's data of other kinds, which are
 /// sampled at rate 1, have about as many.
 constexpr double kVoxelRate = 30;
 
@@ -27,7 +27,7 @@ class VoxelData {
   VoxelData(const std::string& kind, const std::string& folder, Split split, int grid)
       : data_(kind, folder, split), grid_(grid), longest_(data_.longest()) {}
   /// apart: the most frames, of kVoxelRate a second, from one of a window to the next; fewer where no clip is
-  /// as long. What finds keypoints sees seconds at once: in a third of one there is little to tell them apart.
+  /// as long. What finds keypoints sees seconds at once: in a third of one little tells them apart.
   VoxelBatch batch(int windows, int apart, Rng& rng) const;
 
  private:
