@@ -9,7 +9,7 @@
 namespace understudy::training {
 
 constexpr int kVoxelWindow = 10;  ///< T, frames of a window (paper 3, table 3)
-/// Frames a second, at most: every second of AIST++'s 60 (table 4); the paper's data of other kinds, which are
+/// Frames a second at most: every second of AIST++'s 60 (table 4); the paper's data of other kinds, which are
 /// sampled at rate 1, have about as many.
 constexpr double kVoxelRate = 30;
 
