@@ -99,9 +99,8 @@ int eval(EvalOptions options, const std::string& out, const std::string& picture
   if (!pictures.empty()) write_flat_pictures(pictures, evaluation.flat_moments);
   if (!pictures.empty() && !evaluation.style.is_null()) write_style_figures(pictures, evaluation.style);
   for (const auto& [kind, row] : evaluation.keypoints.items())
-    std::printf("%s: sc %.3f of %d keypoints (%.1f not faint), %.3f of the joints found\n", kind.c_str(),
-                row["sc"].get<double>(), row["keypoints"].get<int>(), row["bright"].get<double>(),
-                row["sc_joints"].get<double>());
+    std::printf("%s: sc %.3f of %d keypoints (%.1f not faint)\n", kind.c_str(), row["sc"].get<double>(),
+                row["keypoints"].get<int>(), row["bright"].get<double>());
   std::printf("mean: %s\n", to_json(evaluation.mean).dump().c_str());
   return evaluation.failed ? 1 : 0;
 }

@@ -17,7 +17,7 @@ RigFinder KeypointEvaluation::finder(const EvalOptions& options, const std::stri
     judged.network =
         nn::load_keypoint_finder(nn::weights_folder(network_options(options.how)), options.rig_method, kind);
   return [&judged](const std::vector<Mesh>& scans, double fps) {
-    judged.keypoints.clear(), judged.joints.clear();
+    judged.keypoints.clear();
     for (const FoundKeypoints& found : judged.network->find(scans)) {
       Points bright = found.places;
       for (Eigen::Index k = 0; k < bright.rows(); ++k)
@@ -25,10 +25,7 @@ RigFinder KeypointEvaluation::finder(const EvalOptions& options, const std::stri
           bright.row(k).setConstant(kFarAway);  // one that is too faint is near nothing
       judged.keypoints.push_back(bright);
     }
-    FoundRig rig = rig_finder(judged.network)(scans, fps);
-    for (const RigPose& pose : rig.found.motion.poses)
-      judged.joints.push_back(joint_places(rig.found.rig, bone_motions(rig.found.rig, pose)));
-    return rig;
+    return rig_finder(judged.network)(scans, fps);
   };
 }
 
@@ -40,7 +37,6 @@ void KeypointEvaluation::add(const std::string& kind, const RigTruth& truth) {
   for (size_t t = 0; t < judged.keypoints.size(); ++t) {
     judged.sc.push(judged.keypoints[t], truth.joints[t]);
     judged.bright += (judged.keypoints[t].col(0).array() < kFarAway).count();
-    judged.sc_joints.push(judged.joints[t], truth.joints[t]);
     ++judged.frames;
   }
 }
@@ -50,7 +46,6 @@ Json KeypointEvaluation::summary() const {
   for (const auto& [kind, judged] : kinds_)
     if (judged.frames > 0)
       rows[kind] = {{"sc", judged.sc.value()},
-                    {"sc_joints", judged.sc_joints.value()},
                     {"keypoints", judged.network->parents().size()},
                     {"bright", judged.bright / static_cast<double>(judged.frames)},
                     {"frames", judged.frames}};

@@ -20,16 +20,15 @@ class KeypointEvaluation {
   /// Judges what the kind's finder has noted last against the truth of these scans. Nothing where there is no
   /// such finder.
   void add(const std::string& kind, const RigTruth& truth);
-  /// By kinds: sc (paper 3, eq. 21) of the network's keypoints, sc_joints of the joints of the rigs found
-  /// with them, keypoints, how many of these are not faint on the mean, and frames. Null where nothing was
-  /// noted.
+  /// By kinds: sc (paper 3, eq. 21) of the network's keypoints, how many they are, how many of these are not
+  /// faint on the mean, and frames. Null where nothing was noted.
   Json summary() const;
 
  private:
   struct Kind {
     std::shared_ptr<KeypointFinder> network;
-    std::vector<Points> keypoints, joints;  // of the last sequence, a frame each
-    SemanticConsistency sc, sc_joints;
+    std::vector<Points> keypoints;  // of the last sequence, a frame each
+    SemanticConsistency sc;
     int64_t frames = 0, bright = 0;
   };
   std::map<std::string, Kind> kinds_;

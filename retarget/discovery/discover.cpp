@@ -5,6 +5,7 @@
 #include <cmath>
 #include <memory>
 #include <mutex>
+#include <numeric>
 #include <thread>
 #include <utility>
 
@@ -32,8 +33,10 @@ constexpr int kRounds = 2;       // of parts, bones and tracks: each makes the n
 constexpr uint64_t kSeed = 20240607;
 // Joints while they are looked for give a little, then less.
 constexpr float kLooseJoints = 0.3f, kFirmJoints = 3;
+constexpr float kGuidanceGain = 0.8f;  // keypoints are followed where the surface is then so much nearer
 // Shares of the work at which its stages begin.
-constexpr float kReadingEnds = 0.1f, kTrackingEnds = 0.5f, kTrackedAgain = 0.7f, kBonesEnd = 0.9f;
+constexpr float kReadingEnds = 0.1f, kGuidedEnds = 0.25f, kTrackingEnds = 0.5f, kTrackedAgain = 0.7f,
+                kBonesEnd = 0.9f;
 
 /// f(i) for 0 .. count - 1 on two threads, a half each.
 template <class Function>
@@ -61,6 +64,22 @@ std::vector<int> key_frames_of(int count, double fps) {
   std::vector<int> frames;
   for (int t = 0; t < count && static_cast<int>(frames.size()) < kKeyFrames; t += stride) frames.push_back(t);
   return frames;
+}
+
+/// How far scans are from the tracked surface and it from them, mean over both and the frames, metres.
+float tracks_off(const std::vector<ThinnedFrame>& frames, const SurfaceTracks& tracks) {
+  std::vector<float> off(frames.size());
+  in_halves(frames.size(), [&](size_t t) {
+    const PointTree posed(tracks.at(static_cast<int>(t)));
+    float to_surface = 0, to_scan = 0;
+    for (const auto& p : frames[t].points.rowwise())
+      to_surface += std::sqrt(posed.nearest(p.transpose()).squared);
+    for (const auto& p : posed.points().rowwise())
+      to_scan += std::sqrt(frames[t].tree.nearest(p.transpose()).squared);
+    off[t] = to_surface / static_cast<float>(frames[t].points.rows()) +
+             to_scan / static_cast<float>(posed.points().rows());
+  });
+  return std::accumulate(off.begin(), off.end(), 0.0f) / static_cast<float>(2 * off.size());
 }
 
 /// The bone of each part.
@@ -163,13 +182,17 @@ void Discovery::bind_points() {
 }
 
 void Discovery::track() {
-  const TrackingProgress progress = tracking_progress(kReadingEnds, kTrackingEnds);
   if (!options_.keypoints) {
-    tracks_ = track_surface(frames_, most_open(), kNodes, progress);
+    tracks_ = track_surface(frames_, most_open(), kNodes, tracking_progress(kReadingEnds, kTrackingEnds));
     return;
   }
   start_from_network();
-  if (frames_.size() > 1) track_again(frames_, tracks_, progress);
+  if (frames_.size() == 1) return;
+  track_again(frames_, tracks_, tracking_progress(kReadingEnds, kGuidedEnds));
+  SurfaceTracks alone =
+      track_surface(frames_, tracks_.rest_frame, kNodes, tracking_progress(kGuidedEnds, kTrackingEnds));
+  // The surface alone tells more where it can be followed.
+  if (tracks_off(frames_, tracks_) > kGuidanceGain * tracks_off(frames_, alone)) tracks_ = std::move(alone);
 }
 
 /// Shown as the network sees it: all that follows takes longer.

@@ -13,33 +13,44 @@ namespace {
 
 class KeypointStarts : public ::testing::TestWithParam<bool> {};
 
+/// How far the nearest joint is from the elbow.
+float off_elbow(const Rig& rig) {
+  return (rig.rest_joints().rowwise() - kElbow.transpose())
+      .bottomRows(rig.count() - 1)
+      .rowwise()
+      .norm()
+      .minCoeff();
+}
+
 TEST_P(KeypointStarts, BonesAreWhatMovesNamedAfterTheirKeypoints) {
   DiscoveryOptions options;
   options.keypoints = std::make_shared<ArmFinder>(GetParam());
   const DiscoveredRig found = discover(bending_arm(), options);
   const Rig& rig = found.found.rig;
-  ASSERT_EQ(rig.count(), 2) << "the forearm's two keypoints move as one";
-  const int upper = bone_named(rig, "keypoint 1");
-  ASSERT_GE(upper, 0);
+  EXPECT_LE(rig.count(), 3);
+  EXPECT_GE(bone_named(rig, "keypoint 1"), 0);
   EXPECT_TRUE(bone_named(rig, "keypoint 2") >= 0 || bone_named(rig, "keypoint 3") >= 0);
-  EXPECT_LT((rig.joints[1].rest - kElbow).norm(), 0.03f);
+  EXPECT_LT(off_elbow(rig), 0.04f);
   for (const float off : found.off_m) EXPECT_LT(off, 0.02f);
 }
+INSTANTIATE_TEST_SUITE_P(WithAndWithoutTurns, KeypointStarts, ::testing::Bool());
+
 TEST(KeypointStart, FollowsWhatMovesTooFarBetweenTwoFramesForItsSurfaceAlone) {
   ScanSequence scans;
   scans.name = "arm", scans.count = 4, scans.fps = 4;
   scans.scan = [](int t) { return sparse_arm(t % 2 == 0 ? 0.0f : 1.9f, t); };
   DiscoveryOptions options;
   options.keypoints = std::make_shared<ArmFinder>(true);
-  const DiscoveredRig found = discover(scans, options);
-  ASSERT_EQ(found.found.rig.count(), 2);
-  EXPECT_LT((found.found.rig.joints[1].rest - kElbow).norm(), 0.05f);
-  const DiscoveredRig alone = discover(scans);
+  const DiscoveredRig found = discover(scans, options), alone = discover(scans);
+  EXPECT_LT(off_elbow(found.found.rig), 0.04f);
   const auto worst = [](const DiscoveredRig& rig) {
     return *std::max_element(rig.off_m.begin(), rig.off_m.end());
   };
+  EXPECT_LT(worst(found), 0.02f);
   EXPECT_LT(worst(found), 0.5f * worst(alone));
+  EXPECT_LT(found.found.rig.count(), alone.found.rig.count()) << "what was not followed falls to pieces";
 }
+
 TEST(KeypointStart, NamesGoToTheBonesThatShareMostAndNoneTwice) {
   Rig rig;
   rig.joints.resize(3);
@@ -50,7 +61,6 @@ TEST(KeypointStart, NamesGoToTheBonesThatShareMostAndNoneTwice) {
   EXPECT_EQ(rig.joints[1].name, "keypoint 2");
   EXPECT_EQ(rig.joints[2].name, "bone 2") << "its keypoint is another's";
 }
-INSTANTIATE_TEST_SUITE_P(WithAndWithoutTurns, KeypointStarts, ::testing::Bool());
 
 TEST(KeypointStart, EveryKeypointOwnsAPoint) {
   class Crowd final : public KeypointFinder {
