@@ -37,8 +37,8 @@ struct DiscoveryOptions {
   int parts = 0;  ///< at most; 0: as many as the motion shows
   /// Null: bones are found in the motion alone. Else this network's keypoints tell where the surface goes
   /// where it moves too far between two frames to be followed by itself, and bones are named after those that
-  /// own them, alike in all bodies of the kind. One frame is enough: its bones are the keypoints, joined as in
-  /// all of the kind.
+  /// own them, alike in all bodies of the kind. One frame is enough: its bones are the keypoints, joined as
+  /// in all of the kind.
   std::shared_ptr<KeypointFinder> keypoints = nullptr;
   /// Called each time bones have been looked for, on one thread; with keypoints at once, as they were seen.
   std::function<void(PartsSoFar)> parts_found = {};
