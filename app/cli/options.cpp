@@ -95,6 +95,28 @@ void add_scan_options(CLI::App& command, ScanEdits& edits) {
       ->delimiter(',');
 }
 
+namespace {
+
+/// Of 2D poses and the camera that saw them.
+void add_lifting_options(CLI::App& command, SourceOptions& source) {
+  command.add_option("--layout", source.layout,
+                     "of 2D poses: the order of the points (default: as names or their count tell)");
+  command
+      .add_option("--stature", source.stature,
+                  "of the person in 2D poses, when they are performed in space, metres (default: 1.7)")
+      ->check(CLI::Range(0.3, 3.0));
+  command
+      .add_option("--fov", source.fov,
+                  "vertical field of view of the camera that saw the 2D poses, degrees (default: 50)")
+      ->check(CLI::Range(1.0, 170.0));
+  command
+      .add_option("--pitch", source.pitch,
+                  "how far the camera looks down that saw the 2D poses, degrees (default: as they tell)")
+      ->check(CLI::Range(-80.0, 80.0));
+}
+
+}  // namespace
+
 void add_source_options(CLI::App& command, SourceOptions& source) {
   add_scan_options(command, source.edits);
   command.add_option(
@@ -135,20 +157,7 @@ void add_source_options(CLI::App& command, SourceOptions& source) {
       .add_option("--markers", source.markers,
                   "CSV of markers for --complete: seconds,name,x,y,z in the scans' units and axes")
       ->type_name(kReadPath);
-  command.add_option("--layout", source.layout,
-                     "of 2D poses: the order of the points (default: as names or their count tell)");
-  command
-      .add_option("--stature", source.stature,
-                  "of the person in 2D poses, when they are performed in space, metres (default: 1.7)")
-      ->check(CLI::Range(0.3, 3.0));
-  command
-      .add_option("--fov", source.fov,
-                  "vertical field of view of the camera that saw the 2D poses, degrees (default: 50)")
-      ->check(CLI::Range(1.0, 170.0));
-  command
-      .add_option("--pitch", source.pitch,
-                  "how far the camera looks down that saw the 2D poses, degrees (default: as they tell)")
-      ->check(CLI::Range(-80.0, 80.0));
+  add_lifting_options(command, source);
   command.add_option("--up", source.import.up, "the source's up axis: auto, x, y, z, -x, -y, -z");
   command.add_option("--units", source.import.units, "the source's units: auto, m, dm, cm, mm, in");
   command.add_option("--height", source.import.height,
