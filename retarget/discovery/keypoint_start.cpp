@@ -8,7 +8,6 @@
 namespace understudy {
 namespace {
 
-constexpr float kKeypointNoise = 0.004f;  // of the diagonal: how far parts are from rigid
 constexpr float kTurnedTogether = 0.12f;  // of the diagonal: keypoints about one that turn as it does
 
 std::vector<FoundKeypoints> keypoints_in(const std::vector<ThinnedFrame>& frames, KeypointFinder& finder) {
@@ -81,7 +80,6 @@ KeypointStart start_from_keypoints(const std::vector<ThinnedFrame>& frames, int 
   FoundKeypoints shown = rest;  // the graph has the frame's first points
   if (!shown.owner.empty()) shown.owner.resize(static_cast<size_t>(graph.points.rows()));
   start.parts.of_point = owners_of(graph.points, shown);
-  start.parts.noise_m = kKeypointNoise * size;
   const int count = static_cast<int>(rest.places.rows());
   start.parts.motions.resize(static_cast<size_t>(count));
   for (int k = 0; k < count; ++k)
