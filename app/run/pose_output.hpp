@@ -28,7 +28,6 @@ class PoseOutput {
   PoseOutput(const PoseOutputOptions& options, const Target& target);
   /// live: what the frame was made of; none: a file's, or nothing came.
   void push(const PerformedFrame& frame, const std::optional<LiveMoment>& live);
-  int64_t frames() const { return frames_; }
 
  private:
   PoseOutputOptions options_;

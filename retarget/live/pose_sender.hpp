@@ -14,7 +14,6 @@ class PoseSender {
   /// machine where none is given. rest: the target's T-pose. Throws Error naming the address.
   PoseSender(const std::string& address, const Joints& rest);
   void send(const SentPose& sent);
-  std::string address() const { return address_.text(); }
 
  private:
   Address address_;
