@@ -13,7 +13,7 @@ float hip_height_of(const Target& target) {
 
 PoseOutput::PoseOutput(const PoseOutputOptions& options, const Target& target)
     : options_(options), rest_(target.joints), blend_(hip_height_of(target)) {
-  for (const std::string& address : options_.addresses) senders_.emplace_back(address, rest_);
+  for (const std::string& address : options_.addresses) senders_.emplace_back(address);
 }
 
 void PoseOutput::push(const PerformedFrame& frame, const std::optional<LiveMoment>& live) {
@@ -30,7 +30,7 @@ void PoseOutput::push(const PerformedFrame& frame, const std::optional<LiveMomen
                                                std::chrono::duration<double>(sent.seconds)));
   for (PoseSender& sender : senders_) {
     sent.age_ms = live ? ms_since(live->captured) : 0;
-    sender.send(sent);
+    sender.send(rest_, sent);
   }
 }
 

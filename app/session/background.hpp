@@ -7,6 +7,7 @@
 
 #include "app/session/engine.hpp"
 #include "app/session/refiner.hpp"
+#include "app/session/shown_pose_sender.hpp"
 #include "app/session/studio.hpp"
 
 namespace understudy::app {
@@ -80,9 +81,11 @@ struct Studio::Background {
   std::shared_ptr<MotionsJob> motions_work, clips_work;
   /// All that was made, with the rig that it is of; the newest at the end.
   std::vector<std::pair<std::shared_ptr<const DiscoveredRig>, MadeMotion>> motions;
-  std::string flat_key;                // of what is shown of 2D poses, or on its way
-  std::shared_ptr<FlatJob> flat_work;  // the last one; null: none yet
-  std::string flat_shown;              // the source's part of that key, as it is shown
+  int64_t sending = 0;                    // the switch's number: what was asked for before it is late
+  std::optional<ShownPoseSender> sender;  // none: nothing is sent, or not yet
+  std::string flat_key;                   // of what is shown of 2D poses, or on its way
+  std::shared_ptr<FlatJob> flat_work;     // the last one; null: none yet
+  std::string flat_shown;                 // the source's part of that key, as it is shown
   double since_autosave = 0;
   std::shared_ptr<Autosaving> autosaving = std::make_shared<Autosaving>();
 };

@@ -9,6 +9,7 @@
 #include "retarget/base/error.hpp"
 #include "retarget/base/index.hpp"
 #include "retarget/base/text.hpp"
+#include "retarget/live/pose_sender.hpp"
 
 namespace understudy::app {
 namespace fs = std::filesystem;
@@ -126,6 +127,13 @@ void export_figures(Call& c) {
 }  // namespace
 
 void add_export_commands(Commands& commands) {
+  commands.add({"poses.send", "Send poses to an engine", "on|off"},
+               [](Call& c) { c.studio.send_poses(c.on(0)); });
+  commands.add({"poses.address", "Where poses are sent", "vmc://HOST:PORT|osc://HOST:PORT"}, [](Call& c) {
+    c.session.settings.send_to = send_address(c.word(0, "address")).text();
+    c.studio.save_settings();
+    if (!c.session.sending.address.empty()) c.studio.send_poses(true);
+  });
   commands.add(
       {"export.run", "Export animation",
        "TAKE PATH [format=NAME] [preset=" + names_of_presets() +

@@ -11,6 +11,7 @@
 #include "retarget/base/file.hpp"
 #include "retarget/base/log.hpp"
 #include "retarget/base/part_file.hpp"
+#include "retarget/live/pose_sender.hpp"
 
 namespace understudy::app {
 namespace fs = std::filesystem;
@@ -30,6 +31,7 @@ void bring_into_range(Settings& settings) {
   };
   fields(bring_in, settings);
   if (scale_by_screen) settings.scale = 0;
+  if (!failure_of([&] { send_address(settings.send_to); }).empty()) settings.send_to = Settings().send_to;
   if (settings.samples == 3) settings.samples = 2;
 }
 

@@ -27,7 +27,8 @@ struct Settings {
   std::map<std::string, bool> panels;  ///< shown or not, by name; missing: as the window has it
   std::string last_folder;    ///< that something was opened from or saved in: where the browser starts
   std::string export_format;  ///< the last one used, by name; "csv": figures; empty: none yet
-  int getting_started = 0;    ///< the card that is shown, from 1; 0: none
+  std::string send_to = "vmc://127.0.0.1:39539";  ///< where poses go, see PoseSender
+  int getting_started = 0;                        ///< the card that is shown, from 1; 0: none
   int window_width = 1280, window_height = 800;
 };
 template <class V, class S>
@@ -48,6 +49,7 @@ FieldsOf<S, Settings> fields(V& visit, S& settings) {
   visit("panels", settings.panels);
   visit("last_folder", settings.last_folder);
   visit("export_format", settings.export_format);
+  visit("send_to", settings.send_to);
   visit("getting_started", settings.getting_started, Clamped<int>{0, kGettingStartedCards});
 }
 

@@ -111,6 +111,10 @@ class Studio {
   /// Makes `how.count` motions of the found rig, which are offered then. Throws Error where they cannot be.
   void make_motions(const GenerationOptions& how);
 
+  /// Sends what is shown of the current take to the settings' address from now on, or no longer. An address
+  /// that there is not becomes a dialog.
+  void send_poses(bool wanted);
+
  private:
   struct Background;
   void ask_for_canvas(const std::string& path, const std::string& then, int take = -1);
@@ -167,6 +171,7 @@ class Studio {
   void measure_finished();
   void measure(size_t k);
   TakeState* take_of(int64_t id);
+  void send_shown(double seconds);
   void autosave(double seconds);
   void autosave_ended();
 

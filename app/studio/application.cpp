@@ -8,6 +8,7 @@
 
 #include "app/run/version.hpp"
 #include "app/session/follow.hpp"
+#include "app/session/shown_pose_sender.hpp"
 #include "app/studio/facts.hpp"
 #include "app/studio/window_commands.hpp"
 #include "render/gl/functions.hpp"
@@ -205,7 +206,8 @@ double Application::patience_s() const {
       !studio_->idle() || study_pictures_->busy())
     return std::clamp(fastest_s() - seconds_between(drawn_at_, now), kBriefest, kListening);
   if (seconds_between(input_at_, now) < kTooltips) return kLookingAround;
-  return gui_->wants_text() ? kBlink : kAsleep;
+  const double patience = gui_->wants_text() ? kBlink : kAsleep;
+  return s.sending.address.empty() ? patience : std::min(patience, ShownPoseSender::kStillEvery_s);
 }
 
 /// Pictures and looks that other threads have made.
@@ -218,7 +220,8 @@ std::string Application::fingerprint(int64_t arrived) const {
   const Session& s = session();
   std::string key = key_of(shown_frame(s), s.source.frames.size(), s.source.generation, s.notices.size(),
                            s.notices_made, s.errors.size(), s.question.has_value(), s.working, s.log.size(),
-                           s.changed, s.truth != nullptr, arrived, s.view, s.flat.generation);
+                           s.changed, s.truth != nullptr, arrived, s.view, s.flat.generation,
+                           s.sending.address, s.sending.sent > 0);
   for (const TakeState& take : s.takes)
     key += key_of(take.ready, take.problem, take.paint_problem, take.generation, take.shown.poses.size(),
                   take.performed.size(), take.series.size(), take.as_loaded != nullptr, take.flat != nullptr);

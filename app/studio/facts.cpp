@@ -215,6 +215,8 @@ std::vector<std::pair<std::string, std::string>> facts(const Session& session) {
       {"errors", count(session.errors.size())},
       {"error", session.errors.empty() ? "" : session.errors.front().text},
       {"question", question_name(session)},
+      {"sends_to", session.sending.address.empty() ? "nowhere" : session.sending.address},
+      {"poses_sent", std::to_string(session.sending.sent)},
       {"jobs", count(session.jobs.size())},
       {"bad_frames", count(bad_frames(session).size())},
   };

@@ -13,11 +13,10 @@ Address send_address(const std::string& text) {
   return address;
 }
 
-PoseSender::PoseSender(const std::string& address, const Joints& rest)
-    : address_(send_address(address)), rest_(rest), socket_(address_) {}
+PoseSender::PoseSender(const std::string& address) : address_(send_address(address)), socket_(address_) {}
 
-void PoseSender::send(const SentPose& sent) {
-  socket_.send(address_.scheme == "vmc" ? vmc_messages(rest_, sent) : joint_messages(sent));
+void PoseSender::send(const Joints& rest, const SentPose& sent) {
+  socket_.send(address_.scheme == "vmc" ? vmc_messages(rest, sent) : joint_messages(sent));
 }
 
 }  // namespace understudy

@@ -11,13 +11,15 @@ namespace understudy {
 class PoseSender {
  public:
   /// vmc: the VMC protocol, port 39539 where none is given; osc: plain joints, port 9000. The host is this
-  /// machine where none is given. rest: the target's T-pose. Throws Error naming the address.
-  PoseSender(const std::string& address, const Joints& rest);
-  void send(const SentPose& sent);
+  /// machine where none is given. Throws Error naming the address.
+  explicit PoseSender(const std::string& address);
+  /// rest: the target's T-pose.
+  void send(const Joints& rest, const SentPose& sent);
+  /// In full.
+  std::string address() const { return address_.text(); }
 
  private:
   Address address_;
-  Joints rest_;
   OscSocket socket_;
 };
 

@@ -49,6 +49,7 @@ TEST_F(SettingsTest, AreRemembered) {
   settings.panels = {{"Metrics", false}, {"Log", true}};
   settings.last_folder = "/last";
   settings.export_format = "bvh";
+  settings.send_to = "osc://10.0.0.5:9001";
   settings.getting_started = 3;
   settings.window_width = 1920;
   settings.window_height = 1000;
@@ -68,6 +69,7 @@ TEST_F(SettingsTest, AreRemembered) {
   EXPECT_EQ(again.panels, settings.panels);
   EXPECT_EQ(again.last_folder, settings.last_folder);
   EXPECT_EQ(again.export_format, settings.export_format);
+  EXPECT_EQ(again.send_to, settings.send_to);
   EXPECT_EQ(again.getting_started, settings.getting_started);
   EXPECT_EQ(again.window_width, settings.window_width);
   EXPECT_EQ(again.window_height, settings.window_height);

@@ -49,9 +49,10 @@ TEST_F(WorkspaceTest, DrawsAtAnySizeWithAndWithoutAnythingOpen) {
 TEST_F(WorkspaceTest, EveryDialogDrawsAtAnySize) {
   session.study.study = app::study_preset("rekik").make("/samples");
   for (const auto& [size, scale] : kSizes)
-    for (const char* name : {"open", "open_source", "source_times", "open_target", "replace_target",
-                             "open_document", "save_as", "export", "csv", "picture", "video", "compare",
-                             "settings", "about", "keys", "here", "study_web", "study_run", "teach_style"}) {
+    for (const char* name : {"open",          "open_source", "source_times", "open_target", "replace_target",
+                             "open_document", "save_as",     "export",       "csv",         "picture",
+                             "video",         "compare",     "settings",     "send",        "about",
+                             "keys",          "here",        "study_web",    "study_run",   "teach_style"}) {
       input.size = size, input.scale = scale;
       workspace.open_dialog(session, name);
       frame(3);
@@ -66,9 +67,11 @@ TEST_F(WorkspaceTest, EveryDialogDrawsAtAnySize) {
 TEST_F(WorkspaceTest, EveryDialogCanBeClosedInASmallWindow) {
   input.size = {400, 300};
   const std::pair<const char*, const char*> closers[] = {
-      {"settings", "settings.close"},        {"export", "export.cancel"}, {"picture", "export.cancel"},
-      {"compare", "compare.cancel"},         {"about", "about.close"},    {"keys", "keys.close"},
-      {"teach_style", "teach_style.cancel"}, {"here", "help.close"},      {"open", "browser.cancel"}};
+      {"settings", "settings.close"}, {"send", "send.close"},
+      {"export", "export.cancel"},    {"picture", "export.cancel"},
+      {"compare", "compare.cancel"},  {"about", "about.close"},
+      {"keys", "keys.close"},         {"teach_style", "teach_style.cancel"},
+      {"here", "help.close"},         {"open", "browser.cancel"}};
   for (const auto& [name, closer] : closers) {
     workspace.open_dialog(session, name);
     frame(3);

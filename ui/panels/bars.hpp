@@ -3,7 +3,7 @@
 // Marks: menu.NAME (file, edit, view, target, tools, study, window, help; "menu" where they are one), entries
 // as mark_of(MenuItem); tools.look ... tools.crop; top.undo, top.redo, top.layout(.0 to .3), top.side;
 // status.job (with status.job.cancel), status.more_jobs, status.message (opens the log), status.mouse,
-// status.document, status.rate.
+// status.sending, status.document, status.rate.
 #pragma once
 
 #include "ui/panels/panel.hpp"

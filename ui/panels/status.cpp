@@ -10,6 +10,8 @@
 namespace understudy::ui {
 namespace {
 
+constexpr const char* kSendingWords = "Sending";
+
 std::string words_of(const app::JobView& job) {
   return job.doing.empty() ? job.name : job.name + ", " + job.doing;
 }
@@ -81,6 +83,14 @@ std::string document_words(const app::Session& session) {
   return (session.path.empty() ? "Not saved yet" : file_name(session.path)) + (session.changed ? " *" : "");
 }
 
+/// Nobody forgets that poses leave the program.
+void draw_sending_sign(const app::Session& session, PanelContext& context) {
+  ImGui::SetCursorPosY((context.ui.px(kStatusHeight) - ImGui::GetFrameHeight()) / 2);
+  ButtonOptions options;
+  options.look = ButtonLook::Quiet, options.tooltip = "Poses go to " + session.sending.address;
+  if (button(context.ui, "status.sending", kSendingWords, options)) context.ask("dialog.open", {"send"});
+}
+
 }  // namespace
 
 void draw_status(const app::Session& session, PanelContext& context, float frame_rate) {
@@ -92,7 +102,9 @@ void draw_status(const app::Session& session, PanelContext& context, float frame
   const float rate_width = rate.empty() ? 0 : ui.px(58);
   const float document_width =
       wide ? std::min(ui.px(220), ImGui::CalcTextSize(document_words(session).c_str()).x + ui.px(20)) : 0;
-  float left = width - rate_width - document_width;
+  const bool sends = wide && !session.sending.address.empty();
+  const float sending_width = sends ? ImGui::CalcTextSize(kSendingWords).x + ui.px(24) : 0;
+  float left = width - rate_width - document_width - sending_width;
   const bool completing = session.source.completing >= 0 && session.jobs.empty();
   if (!session.jobs.empty() || completing) {
     const float job = std::min(ui.px(340), wide ? left * 0.6f : left);
@@ -102,6 +114,10 @@ void draw_status(const app::Session& session, PanelContext& context, float frame
     ImGui::SameLine();
   }
   draw_message(session, context, left);
+  if (sends) {
+    ImGui::SetCursorPosX(start + width - rate_width - document_width - sending_width);
+    draw_sending_sign(session, context);
+  }
   const float y = (ui.px(kStatusHeight) - ImGui::GetTextLineHeight()) / 2;
   const ColorScope dim(ImGuiCol_Text, ui.theme().text_dim);
   if (document_width > 0) {

@@ -1,4 +1,5 @@
 #include "ui/panels/workspace.hpp"
+#include "ui/panels/sending.hpp"
 
 #include <imgui_internal.h>
 
@@ -200,7 +201,7 @@ void Workspace::open_dialog(const app::Session& session, const std::string& name
   const bool exports = begin_export(session, export_, name);
   const bool shows_study = begin_study_form(session, study_form_, name);
   if (name == "about" && services_.about) about_ = services_.about();
-  const auto known = {"compare", "teach_style", "settings", "about", "keys", "here", "none"};
+  const auto known = {"compare", "teach_style", "settings", "send", "about", "keys", "here", "none"};
   US_CHECK(exports || shows_study || std::find(known.begin(), known.end(), name) != known.end(),
            "there is no dialog ", name);
   dialog_ = exports ? "export" : shows_study ? "study_form" : name == "none" ? "" : name;
@@ -231,6 +232,7 @@ void Workspace::draw_dialog(const app::Session& session, PanelContext& context) 
     if (dialog_ == "export") stays = draw_export(session, context, export_, files_);
     if (dialog_ == "study_form") stays = draw_study_form(session, context, study_form_, files_);
     if (dialog_ == "settings") stays = draw_settings(session, context);
+    if (dialog_ == "send") stays = draw_sending(session, context);
     if (dialog_ == "about") stays = draw_about(context, about_);
     if (dialog_ == "keys") stays = draw_keys(session, context);
     if (dialog_ == "here") stays = draw_help_here(context, here_);

@@ -46,7 +46,7 @@ TEST_F(Pictures, OfTheStartScreen) {
 }
 
 TEST_F(Pictures, OfDialogs) {
-  for (const char* name : {"export", "picture", "compare", "settings", "about", "keys", "open"}) {
+  for (const char* name : {"export", "picture", "compare", "settings", "send", "about", "keys", "open"}) {
     workspace.open_dialog(session, name);
     keep(name);
     workspace.browser() = FileBrowser();
