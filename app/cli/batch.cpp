@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <memory>
+#include <optional>
 
 #include "app/batch/shard.hpp"
 #include "app/batch/summary.hpp"
@@ -13,6 +14,7 @@
 #include "app/cli/commands.hpp"
 #include "app/cli/options.hpp"
 #include "app/cli/progress.hpp"
+#include "app/run/exports.hpp"
 #include "app/run/interrupt.hpp"
 #include "retarget/base/error.hpp"
 #include "retarget/base/log.hpp"
@@ -25,13 +27,14 @@ namespace {
 constexpr int kSomeFailed = 3;  // exit code
 
 struct BatchOptions {
-  std::string manifest, out, shard, merge;
+  std::string manifest, out, merge;
+  std::optional<std::string> shard;
   int shards = 0, jobs = 1;
   bool status = false;
 };
 
 Shard chosen_shard(const BatchOptions& options) {
-  if (!options.shard.empty()) return parse_shard(options.shard);
+  if (options.shard) return parse_shard(*options.shard);
   // A table is of all jobs wherever it is made.
   if (options.status || !options.merge.empty()) return {};
   return shard_from([](const char* name) { return std::getenv(name); }, options.shards);
@@ -84,6 +87,7 @@ int run_batch(const BatchOptions& options, const Manifest& manifest, const std::
 }
 
 int batch(const BatchOptions& options) {
+  check_not_read(options.merge, {options.manifest});
   const Shard shard = chosen_shard(options);
   const Manifest manifest = read_manifest(options.manifest, batch_commands());
   const std::vector<size_t> jobs = jobs_of(shard, manifest.jobs.size());

@@ -81,7 +81,7 @@ DiscoveryOptions discovery_options(const DiscoverOptions& options, Progress& pro
 }
 
 DiscoveredRig found_in(const ScanSequence& scans, const DiscoverOptions& options) {
-  Progress progress("finding its skeleton", 100, false, "%");
+  Progress progress("finding its skeleton", 100, false, "");
   DiscoveredRig rig = discover(scans, discovery_options(options, progress));
   progress.finish();
   return rig;
@@ -218,7 +218,7 @@ DiscoveredRig as_discovered(RiggedMotion performed) {
 
 int perform_rig(const DiscoverOptions& options) {
   const RiggedMotion source = performing_source(options);
-  Progress progress("finding the skeleton of what performs", 100, false, "%");
+  Progress progress("finding the skeleton of what performs", 100, false, "");
   const OtherBody read = other_body(options.perform, options.source, discovery_options(options, progress));
   progress.finish();
   US_CHECK(!read.is_scan || options.matches.empty(), options.perform,

@@ -83,6 +83,8 @@ void check_outputs(const GenerateOptions& options) {
 int generate(GenerateOptions options) {
   if (!options.between.empty()) options.how.between = {options.between[0], options.between[1]};
   options.how.paper_sampling = options.sampling == "paper";
+  US_CHECK(!options.how.paper_sampling || (options.how.engine == "vrnn" && options.how.between),
+           "--sampling paper is of --engine vrnn with --between");
   check_outputs(options);
   RiggedMotion known = read_rig(options.rig);
   const std::string own_name = std::exchange(known.rig.name, file_name(options.rig));
@@ -131,7 +133,8 @@ Action declare_generate(CLI::App& command) {
   between->expected(2);
   command.add_flag("--loop", how.loop, "the new clip ends in the pose that it begins with")
       ->excludes(between);
-  command.add_option("--seed", how.seed, "another one gives another motion (default: 1)");
+  command.add_option("--seed", how.seed, "another one gives another motion (default: 1)")
+      ->check(CLI::NonNegativeNumber);
   command.add_option("--count", how.count, "so many motions, each with a seed of its own (default: 1)");
   command.add_option("--engine", how.engine, engine_help());
   command

@@ -28,10 +28,15 @@ void Progress::show() {
   last_ = Clock::now();
   const double seconds = std::chrono::duration<double>(last_ - began_).count();
   const double rate = seconds > 0 ? static_cast<double>(done_) / seconds : 0;
-  std::fprintf(stderr, "%s%s: %s %lld", terminal_ ? "\r" : "", what_.c_str(), item_.c_str(),
-               static_cast<long long>(done_));
-  if (total_ > 0) std::fprintf(stderr, " of %lld", static_cast<long long>(total_));
-  std::fprintf(stderr, ", %.1f %ss/s%s", rate, item_.c_str(), terminal_ ? "  " : "\n");
+  std::fprintf(stderr, "%s%s: ", terminal_ ? "\r" : "", what_.c_str());
+  if (item_.empty()) {
+    std::fprintf(stderr, "%.0f %%", 100 * static_cast<double>(done_) / static_cast<double>(total_));
+  } else {
+    std::fprintf(stderr, "%s %lld", item_.c_str(), static_cast<long long>(done_));
+    if (total_ > 0) std::fprintf(stderr, " of %lld", static_cast<long long>(total_));
+    std::fprintf(stderr, ", %.1f %ss/s", rate, item_.c_str());
+  }
+  std::fprintf(stderr, "%s", terminal_ ? "  " : "\n");
   std::fflush(stderr);
   open_ = terminal_;
   shown_ = done_;

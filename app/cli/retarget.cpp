@@ -10,6 +10,7 @@
 #include "retarget/base/text.hpp"
 #include "retarget/formats/file_formats.hpp"
 #include "retarget/live/stream_format.hpp"
+#include "retarget/live/stream_receiver.hpp"
 
 namespace understudy::app {
 namespace {
@@ -73,7 +74,8 @@ Action declare_retarget(CLI::App& command) {
   command
       .add_option(
           "--out", job->out,
-          "the animated target: " + export_suffixes() + "; or a folder of pose pictures (--format poses)")
+          "the animated target: " + export_suffixes() +
+              "; or a folder of pose pictures (--format poses); where nothing else is asked for, out.glb")
       ->type_name(kWrittenPath);
   std::string formats;
   for (const ExportFormat& info : export_formats()) append_item(formats, info.name);
@@ -89,6 +91,7 @@ Action declare_retarget(CLI::App& command) {
     const bool is_flat = is_flat_job(*job);
     const bool is_lifted = !is_flat && is_keypoint_source(job->source);
     check_flat_choice(command, is_flat ? FlatUse::InPicture : is_lifted ? FlatUse::Lifted : FlatUse::None);
+    if (command.count("--listen") > 0) listen_address(job->source.path);
     job->source.follow = job->source.follow || is_live(job->source);
     if (job->out.empty() && job->report.empty() && job->preview.empty() && job->skeletons.empty() &&
         job->send.empty())

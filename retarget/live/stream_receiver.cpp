@@ -52,13 +52,17 @@ StreamReceiver::StreamReceiver(const ReceiverOptions& options)
   }
 }
 
+Address listen_address(const std::string& text) {
+  return parse_address(text, {"tcp", "127.0.0.1", "9000"});
+}
+
 StreamReceiver::~StreamReceiver() {
   stop_ = Descriptor();  // the other end wakes up
   thread_.join();
 }
 
 void StreamReceiver::listen() {
-  Address address = parse_address(options_.address, {"tcp", "127.0.0.1", "9000"});
+  Address address = listen_address(options_.address);
   listening_ = listen_at(address);
   address.port = port_of(listening_);
   address_ = address.text();
@@ -135,7 +139,7 @@ void StreamReceiver::read() {
       if (auto frame = cutter_.take()) keep(std::move(*frame));
     }
   } catch (const Error& lie) {
-    leave(std::string("says ") + lie.what() + ", and is closed");
+    leave(std::string("says ") + lie.what() + ", and is closed; --stream says how clouds follow each other");
   } catch (const std::bad_alloc&) {
     leave("sends more than there is memory for, and is closed");
   }

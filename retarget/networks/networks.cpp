@@ -271,7 +271,8 @@ std::unique_ptr<MotionDynamics> load_motion_dynamics(const std::string& place, c
     return dynamics;
   }
   US_CHECK(!kinds.empty(), place, ": has no weights of how bodies move (marionette_dynamics_person.weights)");
-  throw Error(rig.name + ": its bones are not those of the kinds that a network knows: " + kinds);
+  throw Error(rig.name + ": its bones are not those of the kinds that a network knows (" + kinds +
+              "); --engine match needs no network");
 }
 
 RuntimeReport runtime_report() {

@@ -194,11 +194,15 @@ TEST_F(Batch, RefusesListsThatAreNoneBeforeItBegins) {
   expect_refusal("{", "jobs.jsonl line 1: is damaged");
   expect_refusal("", "jobs.jsonl: lists no job");
   write_text(manifest(), line);
-  for (const char* shard : {"0/0", "2/2", "one"}) {
+  for (const char* shard : {"0/0", "2/2", "one", ""}) {
     const Finished run = batch({"--shard", shard});
     EXPECT_EQ(run.code, 1) << run.err;
     EXPECT_NE(run.err.find(std::string("--shard ") + shard + ": "), std::string::npos) << run.err;
   }
+  const Finished onto_itself = batch({"--merge", manifest()});
+  EXPECT_EQ(onto_itself.code, 1);
+  EXPECT_NE(onto_itself.err.find("jobs.jsonl: is read here, and would be lost"), std::string::npos);
+  EXPECT_EQ(read_bytes(manifest()), line);
   EXPECT_EQ(batch({"--jobs", "0"}).code, 2);
   EXPECT_NE(run_program({"batch", scratch.path("none.jsonl"), "--out", "x"}).err.find("none.jsonl: "),
             std::string::npos);

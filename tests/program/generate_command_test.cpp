@@ -132,7 +132,15 @@ TEST_F(Generate, ARigUnlikeTheKind) {
   file << text;
   file.close();
   expect_clean_failure(generate({"--engine", "vrnn", "--weights", weights, "--out", out("a.glb")}),
-                       "dog.glb: its bones are not those of the kinds that a network knows: hand");
+                       "dog.glb: its bones are not those of the kinds that a network knows (hand)");
+}
+
+TEST_F(Generate, ChoicesThatDoNotApplyAreRefused) {
+  expect_clean_failure(generate({"--sampling", "paper", "--out", out("a.glb")}),
+                       "--sampling paper is of --engine vrnn with --between");
+  const Finished below = generate({"--seed", "-1", "--out", out("a.glb")});
+  EXPECT_NE(below.code, 0);
+  EXPECT_NE(below.err.find("--seed"), std::string::npos) << below.err;
 }
 
 TEST_F(Generate, CtrlCWritesNothing) {

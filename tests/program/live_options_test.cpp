@@ -110,6 +110,7 @@ TEST_F(LiveOptionsOfTheProgram, RefusesInOneSentence) {
   };
   expect_clean_failure(listen("tcp://127.0.0.1:" + taken), "Address already in use");
   expect_clean_failure(listen("tcp://127.0.0.1:x"), "needs a port");
+  expect_clean_failure(listen("udp://127.0.0.1:9000"), "is no address of the form tcp://HOST:PORT");
   expect_clean_failure(listen("tcp://127.0.0.1:0", {"--wait", "0.2"}), "no frame came within 0.2 s");
   expect_clean_failure(listen("tcp://127.0.0.1:0", {"--person", "all"}), "one person of it");
   expect_clean_failure(listen("tcp://127.0.0.1:0", {"--send", "udp://here"}), "is no address to send to");

@@ -157,6 +157,7 @@ TEST(BadScans, DoubtComparesWithTheBestWhereMostIsBad) {
   EXPECT_EQ(bad, (std::vector<bool>{false, true, false, true, true, true}));
   // So little of a body of 20 m is no matter.
   EXPECT_EQ(doubted_frames({0.01f, 0.1f, 0.01f, 0.1f, 0.1f, 0.1f}, 20), std::vector<bool>(6, false));
+  EXPECT_EQ(doubted_frames({0.2f, 0.2f, 0.2f}, 2), std::vector<bool>(3, true)) << "another body's scans";
 }
 
 TEST(BadScans, OneCameraSeesTheElbowToo) {
