@@ -12,6 +12,7 @@
 namespace understudy::render {
 namespace {
 
+constexpr int kWidestCell = 600;  // pixels: a single moment does not become a poster
 constexpr int kGap = 6, kMargin = 26, kGutter = 34, kTitle = 58, kHeader = 40, kBandGap = 26;  // pixels
 const Vec3 kPaper(0.992f, 0.993f, 0.994f), kInk(0.13f, 0.15f, 0.18f), kFaintInk(0.46f, 0.49f, 0.53f);
 
@@ -69,18 +70,19 @@ struct Row {
   std::string caption;
   float yaw;
   std::vector<Cell>* cells;
-  float height = 0.5f;  ///< metres, of this subject's highest point above its floor
-  PixelSize size;       ///< of its cells
+  float height = 0.05f;  ///< metres, of this subject's highest point above its floor
+  PixelSize size;        ///< of its cells
 };
 
 struct Layout {
+  int width;  // of the sheet
   int columns, bands, band_height, header;
   float scale;  // of letters: 1 at the default width
 };
 
 /// Sets each row's height; returns half the width of the widest person, metres.
 float measure(std::vector<Row>& rows) {
-  float half_width = 0.2f;
+  float half_width = 0.02f;
   for (Row& row : rows)
     for (const Cell& cell : *row.cells) {
       if (cell.outline.rows() == 0) continue;
@@ -114,7 +116,7 @@ Camera camera_for(const Row& row, const Cell& cell) {
 
 /// The distance from which every person of the sheet is wholly seen, so that all have one scale.
 float common_distance(const std::vector<Row>& rows) {
-  float distance = 0.5f;
+  float distance = 0.1f;
   for (const Row& row : rows)
     for (const Cell& cell : *row.cells)
       distance = std::max(distance,
@@ -126,7 +128,9 @@ Layout lay_out(const SheetOptions& options, size_t moments, std::vector<Row>& ro
   Layout layout{};
   layout.columns = std::max(1, std::min(options.columns, static_cast<int>(moments)));
   layout.bands = (static_cast<int>(moments) + layout.columns - 1) / layout.columns;
-  const int width = (options.width - 2 * kMargin - kGutter - (layout.columns - 1) * kGap) / layout.columns;
+  const int beside = 2 * kMargin + kGutter + (layout.columns - 1) * kGap;
+  const int width = std::min(kWidestCell, (options.width - beside) / layout.columns);
+  layout.width = width < kWidestCell ? options.width : beside + layout.columns * width;
   US_CHECK(width >= 24, "a contact sheet of ", options.width, " pixels is too narrow for ", layout.columns,
            " columns");
   layout.scale = std::clamp(static_cast<float>(width) / 285.f, 0.75f, 1.2f);
@@ -236,9 +240,9 @@ std::vector<Row> rows_of(std::vector<Cell>& sources, std::vector<Cell>& targets,
   for (const ViewAngle& view : kViews) {
     const float yaw = options.heading + view.yaw;
     if (!sources.empty())
-      rows.push_back({options.source_caption + " \xC2\xB7 " + view.name, yaw, &sources, 0.5f, {}});
+      rows.push_back({options.source_caption + " \xC2\xB7 " + view.name, yaw, &sources, 0.05f, {}});
     if (!targets.empty())
-      rows.push_back({options.target_caption + " \xC2\xB7 " + view.name, yaw, &targets, 0.5f, {}});
+      rows.push_back({options.target_caption + " \xC2\xB7 " + view.name, yaw, &targets, 0.05f, {}});
   }
   return rows;
 }
@@ -255,7 +259,7 @@ Image draw(Renderer& renderer, std::vector<Row> rows, const std::vector<Header>&
   const Font font = Font::system();
   const int band = layout.band_height + kBandGap;
   const int top = options.title.empty() && !sides ? kMargin - layout.header / 2 : kTitle;
-  Image sheet(options.width, top + layout.bands * band - kBandGap + kMargin - kGap, kPaper);
+  Image sheet(layout.width, top + layout.bands * band - kBandGap + kMargin - kGap, kPaper);
   draw_title(sheet, font, options.title, sides);
   for (size_t i = 0; i < headers.size(); ++i) {
     const int column = static_cast<int>(i) % layout.columns;
@@ -318,7 +322,7 @@ Image strip(Renderer& renderer, const std::vector<StripRow>& performers, const s
   rows.reserve(cells.size());
   for (size_t r = 0; r < cells.size(); ++r)
     rows.push_back(
-        {side_by_side ? time_text(seconds[0]) : performers[r].caption, options.yaw, &cells[r], 0.5f, {}});
+        {side_by_side ? time_text(seconds[0]) : performers[r].caption, options.yaw, &cells[r], 0.05f, {}});
   if (!side_by_side)
     for (const double time : seconds) headers.push_back({"", time_text(time)});
   SheetOptions sheet;
@@ -343,7 +347,7 @@ Image picture_sheet(const std::vector<PictureRow>& rows, const std::vector<std::
   US_CHECK(!rows.empty() && !headers.empty(), "a sheet of pictures needs one");
   const int count = static_cast<int>(headers.size()), columns = std::min(options.columns, count);
   const int width = picture_width(options, count);
-  Layout layout{columns, (count + columns - 1) / columns, kHeader, kHeader, 1};
+  Layout layout{options.width, columns, (count + columns - 1) / columns, kHeader, kHeader, 1};
   for (const PictureRow& row : rows) {
     US_CHECK(row.pictures.size() == headers.size(), row.caption, ": has ", row.pictures.size(),
              " pictures, the sheet ", headers.size());
@@ -351,7 +355,7 @@ Image picture_sheet(const std::vector<PictureRow>& rows, const std::vector<std::
   }
   const Font font = Font::system();
   const int band = layout.band_height + kBandGap, top = options.title.empty() ? kMargin / 2 : kTitle;
-  Image sheet(options.width, top + layout.bands * band - kBandGap + kMargin - kGap, kPaper);
+  Image sheet(layout.width, top + layout.bands * band - kBandGap + kMargin - kGap, kPaper);
   draw_title(sheet, font, options.title, /*sides=*/false);
   for (int i = 0; i < count; ++i) {
     const int x = kMargin + kGutter + i % columns * (width + kGap);

@@ -21,7 +21,7 @@ struct SheetMoment {
 
 struct SheetOptions {
   std::string title;
-  int width = 1800;   ///< pixels; the height follows from the people shown
+  int width = 1800;   ///< pixels, at most; the height follows from the people shown
   int columns = 6;    ///< moments in a row; more continue below
   float heading = 0;  ///< radians about +y that the person faces, 0 is +z; the sheet looks from there
   bool strays =

@@ -152,7 +152,7 @@ TEST(BadScans, MotionFasterThanALimbIsWideIsFollowedOrDoubted) {
 }
 
 TEST(BadScans, DoubtComparesWithTheBestWhereMostIsBad) {
-  EXPECT_EQ(doubted_frames({1, 1, 1, 3, -1}, 10), (std::vector<bool>{false, false, false, true, true}));
+  EXPECT_EQ(doubted_frames({1, 1, 1, 3, -1}, 100), (std::vector<bool>{false, false, false, true, true}));
   const std::vector<bool> bad = doubted_frames({0.01f, 0.1f, 0.01f, 0.1f, 0.1f, 0.1f}, 1);
   EXPECT_EQ(bad, (std::vector<bool>{false, true, false, true, true, true}));
   // So little of a body of 20 m is no matter.
