@@ -54,7 +54,7 @@ bool RetargetedSource::read(const std::optional<Joints>& known) {
   if (known) given.joints = *known;
   const Observation seen = known ? observer.observe(given, scan->mesh, dt) : observed(observer, *scan, dt);
   if (!known && scan->usable && !scan->skeleton) cut_.tell(seen);
-  if (!scan->usable) problem_ = scan->problem;
+  if (!scan->usable && problem_.empty()) problem_ = scan->problem;
   if (!seen.warning.empty()) doubt_ = seen.warning;
   if (scan->usable && !scan->skeleton && !refusal(seen).empty()) ++unrecognised_;
   retargeter_.send(seen, dt);

@@ -61,7 +61,7 @@ class RetargetedSource {
   ScanEdits edits_;  // none where scans are completed: they were applied before
   PersonCut cut_;
   std::string doubt_;                    // why the source may be no person; empty: nothing speaks against it
-  std::string problem_;                  // of the last frame that could not be used
+  std::string problem_;                  // of the first frame that could not be used
   std::deque<RetargetedFrame> waiting_;  // for their style
   bool ended_ = false;
   int64_t read_ = 0, frames_ = 0, flagged_ = 0, unrecognised_ = 0;
