@@ -1,8 +1,4 @@
-// --listen, --source -, --follow and --send of the shipped program: a camera that is none, what an engine hears.
-#include <arpa/inet.h>
-#include <netinet/in.h>
-#include <sys/socket.h>
-
+// --listen, --source -, --follow and --send of the shipped program: a camera and an engine that are none.
 #include <cmath>
 #include <csignal>
 #include <fstream>
@@ -20,13 +16,8 @@
 namespace understudy::tests {
 namespace {
 
-std::string free_port(int kind) {
-  const Descriptor probe(socket(AF_INET, kind, 0));
-  sockaddr_in place{};
-  place.sin_family = AF_INET;
-  place.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-  EXPECT_EQ(bind(probe.value(), reinterpret_cast<sockaddr*>(&place), sizeof place), 0);
-  return port_of(probe);
+std::string free_port() {
+  return port_of(listen_at({"tcp", "127.0.0.1", "0"}));
 }
 
 ProgramOptions named(const std::string& program) {
@@ -65,7 +56,7 @@ TEST_F(LiveOptionsOfTheProgram, AreInTheHelp) {
 }
 
 TEST_F(LiveOptionsOfTheProgram, AnEngineHearsTheExportedMotionToATenthOfADegree) {
-  const std::string port = free_port(SOCK_DGRAM);
+  const std::string port = OscReceiver().port();
   Program engine({"-L", port}, named("oscdump"));
   const Finished run = retarget(scans(), {"--send", "vmc://127.0.0.1:" + port, "--out", out("a.npz")});
   ASSERT_EQ(run.code, 0) << run.err;
@@ -87,7 +78,7 @@ TEST_F(LiveOptionsOfTheProgram, AnEngineHearsTheExportedMotionToATenthOfADegree)
 }
 
 TEST_F(LiveOptionsOfTheProgram, ACameraThatConnectsIsPerformedAndAnInterruptKeepsWhatCame) {
-  const std::string port = free_port(SOCK_STREAM);
+  const std::string port = free_port();
   Program program({"retarget", "--listen", "tcp://127.0.0.1:" + port, "--target", target(), "--out",
                    out("a.npz"), "--report", out("a.json")});
   ASSERT_TRUE(program.wait_for("waits for a sender"));
@@ -103,7 +94,7 @@ TEST_F(LiveOptionsOfTheProgram, ACameraThatConnectsIsPerformedAndAnInterruptKeep
 }
 
 TEST_F(LiveOptionsOfTheProgram, ASecondCameraIsToldThatItIsRefusedAndTheFirstGoesOn) {
-  const std::string address = "tcp://127.0.0.1:" + free_port(SOCK_STREAM);
+  const std::string address = "tcp://127.0.0.1:" + free_port();
   Program program({"retarget", "--listen", address, "--target", target(), "--out", out("a.npz")});
   ASSERT_TRUE(program.wait_for("waits for a sender"));
   Program first({camera(), walk(), address.substr(address.rfind(':') + 1), "--seconds", "90"},
@@ -175,7 +166,7 @@ TEST_F(LiveOptionsOfTheProgram, APortThatTheUserMayNotOpenIsNamedWithTheReason) 
 }
 
 TEST_F(LiveOptionsOfTheProgram, RefusesInOneSentence) {
-  const std::string taken = free_port(SOCK_STREAM);
+  const std::string taken = free_port();
   const Descriptor listening = listen_at({"tcp", "127.0.0.1", taken});
   const auto listen = [&](const std::string& address, std::vector<std::string> more = {}) {
     std::vector<std::string> all = {"retarget", "--listen", address,     "--target",
