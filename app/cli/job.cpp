@@ -150,7 +150,7 @@ Running start(const JobOptions& options) {
   job.has_style = options.how.method.style.any() || options.tempo.any();
   job.tempo.emplace(options.tempo, job.character->target.joints, job.source->fps());
   if (!options.send.empty())
-    job.sent.emplace(PoseOutputOptions{options.send, job.source->fps(), !is_live(options.source)},
+    job.sent.emplace(PoseOutputOptions{options.send, job.source->fps(), !options.source.follow},
                      job.character->target);
   if (!options.preview.empty()) job.moments.emplace(job.source->count());
   if (!options.skeletons.empty()) job.skeletons.emplace(job.source->count(), kSkeletonMoments);

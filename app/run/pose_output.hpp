@@ -17,7 +17,7 @@ namespace understudy::app {
 struct PoseOutputOptions {
   std::vector<std::string> addresses;  ///< see PoseSender
   double fps = 30;
-  bool in_time = false;  ///< each frame is held back until its time: the source is no live one
+  bool in_time = false;  ///< each frame is held back until its time: the source is there as a whole
 };
 
 /// Where the source is lost for some seconds the target blends to its T-pose (TPoseBlend). One thread at a

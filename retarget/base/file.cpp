@@ -7,17 +7,11 @@
 #include <cerrno>
 #include <cstring>
 
+#include "retarget/base/descriptor.hpp"
 #include "retarget/base/error.hpp"
 
 namespace understudy {
 namespace {
-
-struct Descriptor {
-  int fd;
-  ~Descriptor() {
-    if (fd >= 0) ::close(fd);
-  }
-};
 
 std::string reason() {
   return errno == ENOENT ? ": there is no such file"
@@ -41,17 +35,17 @@ uint64_t check_file(const std::string& path) {
 }
 
 std::string read_file(const std::string& path, uint64_t most) {
-  const Descriptor file{::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)};
-  US_CHECK(file.fd >= 0, path, reason());
+  const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
+  US_CHECK(file.is_open(), path, reason());
   struct stat about {};
-  US_CHECK(::fstat(file.fd, &about) == 0, path, ": cannot be read (", std::strerror(errno), ")");
+  US_CHECK(::fstat(file.value(), &about) == 0, path, ": cannot be read (", std::strerror(errno), ")");
   const uint64_t size = regular_size(about, path);
   US_CHECK(size <= most, path, ": has ", size, " bytes, more than the expected ", most);
 
   std::string bytes(size, '\0');
   size_t have = 0;
   while (have < bytes.size()) {
-    const ssize_t got = ::read(file.fd, bytes.data() + have, bytes.size() - have);
+    const ssize_t got = ::read(file.value(), bytes.data() + have, bytes.size() - have);
     if (got < 0 && errno == EINTR) continue;
     US_CHECK(got >= 0, path, ": cannot be read (", std::strerror(errno), ")");
     if (got == 0) break;  // it shrank meanwhile

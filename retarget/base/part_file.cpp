@@ -10,6 +10,7 @@
 #include <fstream>
 #include <utility>
 
+#include "retarget/base/descriptor.hpp"
 #include "retarget/base/error.hpp"
 
 namespace understudy {
@@ -50,13 +51,12 @@ void check_replaceable(const std::string& path, const std::string& part) {
 /// Brings what is `at` to the disk, which may only now find that it is full: a file; of a folder all that is
 /// in it, by one call for the whole disk, as each file's own would wait for the disk anew.
 void sync_to_disk(const std::string& at, const std::string& path) {
-  const int handle = ::open(at.c_str(), O_RDONLY | O_CLOEXEC);
+  const Descriptor file(::open(at.c_str(), O_RDONLY | O_CLOEXEC));
   struct stat about {};
-  const bool is_folder = handle >= 0 && ::fstat(handle, &about) == 0 && S_ISDIR(about.st_mode);
-  const bool good = handle >= 0 && ((is_folder ? ::syncfs(handle) : ::fsync(handle)) == 0 || errno == EINVAL);
-  const int why = errno;
-  ::close(handle);
-  US_CHECK(good, path, ": cannot be written (", std::strerror(why), ")");
+  const bool is_folder = file.is_open() && ::fstat(file.value(), &about) == 0 && S_ISDIR(about.st_mode);
+  const bool good = file.is_open() &&
+                    ((is_folder ? ::syncfs(file.value()) : ::fsync(file.value())) == 0 || errno == EINVAL);
+  US_CHECK(good, path, ": cannot be written (", std::strerror(errno), ")");
 }
 
 }  // namespace

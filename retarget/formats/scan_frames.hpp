@@ -5,7 +5,9 @@
 
 namespace understudy {
 
-/// The file as a frame; a problem is written into it, not thrown.
+/// Gives the frame, which has its path, what `read` gives, thinned; a problem is written into it, not thrown.
+void take_scan(ScanFrame& frame, const std::function<Mesh()>& read);
+/// The file as a frame, by take_scan.
 ScanFrame load_frame(const std::string& path, int64_t number);
 
 /// A frame that the sequence's numbers leave out: time passes, and nothing is there.

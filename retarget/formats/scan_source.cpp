@@ -185,22 +185,26 @@ std::optional<int64_t> frame_number(const std::string& path) {
   return number;
 }
 
+void take_scan(ScanFrame& frame, const std::function<Mesh()>& read) {
+  try {
+    frame.mesh = read();
+    thin_cloud(frame.mesh, kMostScanPoints);
+    frame.is_empty = finite_count(frame.mesh.vertices) == 0;
+    US_CHECK(!frame.is_empty, frame.path, ": has no ", frame.mesh.vertices.rows() > 0 ? "finite " : "",
+             "points");
+  } catch (const Error& error) {
+    frame.problem = error.what();
+  } catch (const std::bad_alloc&) {
+    frame.problem = frame.path + ": is too large for this machine's memory";
+  }
+  frame.usable = frame.problem.empty();
+}
+
 ScanFrame load_frame(const std::string& path, int64_t number) {
   ScanFrame frame;
   frame.number = number;
   frame.path = path;
-  try {
-    frame.mesh = read_mesh(path);
-    thin_cloud(frame.mesh, kMostScanPoints);
-    frame.is_empty = finite_count(frame.mesh.vertices) == 0;
-    US_CHECK(!frame.is_empty, path, ": has no ", frame.mesh.vertices.rows() > 0 ? "finite " : "", "points");
-  } catch (const Error& error) {
-    frame.usable = false;
-    frame.problem = error.what();
-  } catch (const std::bad_alloc&) {
-    frame.usable = false;
-    frame.problem = path + ": is too large for this machine's memory";
-  }
+  take_scan(frame, [&] { return read_mesh(path); });
   return frame;
 }
 

@@ -87,24 +87,10 @@ class LiveFrames final : public ScanSource::Frames {
     ScanFrame frame;
     frame.number = *number;
     frame.path = receiver_.address();
-    read(received.frame, frame);
+    take_scan(frame, [&] { return decode(received.frame, frame.path); });
+    if (!frame.usable && !frame.is_empty) problems_.warn(frame.problem);
     frame.live = LiveMoment{received.captured, receiver_.dropped() + too_many_};
     return numbered(std::move(frame));
-  }
-
-  void read(const StreamFrame& received, ScanFrame& frame) {
-    try {
-      frame.mesh = decode(received, frame.path);
-      thin_cloud(frame.mesh, kMostScanPoints);
-      frame.is_empty = frame.mesh.vertices.rows() == 0;
-      US_CHECK(!frame.is_empty, frame.path, ": has no points");
-    } catch (const Error& error) {
-      frame.problem = error.what();
-    } catch (const std::bad_alloc&) {
-      frame.problem = frame.path + ": is too large for this machine's memory";
-    }
-    frame.usable = frame.problem.empty();
-    if (!frame.usable && !frame.is_empty) problems_.warn(frame.problem);
   }
 
   ScanFrame numbered(ScanFrame frame) {

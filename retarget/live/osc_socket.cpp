@@ -1,10 +1,10 @@
 #include "retarget/live/osc_socket.hpp"
 
 #include <lo/lo.h>
-#include <netdb.h>
 
 #include "retarget/base/error.hpp"
 #include "retarget/base/log.hpp"
+#include "retarget/live/socket.hpp"
 
 namespace understudy {
 namespace {
@@ -29,15 +29,6 @@ void add(lo_message message, float value) {
 }
 void add(lo_message message, const std::string& value) {
   lo_message_add_string(message, value.c_str());
-}
-
-void check_host(const Address& address) {
-  addrinfo wanted{};
-  wanted.ai_socktype = SOCK_DGRAM;
-  addrinfo* found = nullptr;
-  const int failed = getaddrinfo(address.host.c_str(), address.port.c_str(), &wanted, &found);
-  US_CHECK(failed == 0, address.text(), ": there is no such host (", gai_strerror(failed), ")");
-  freeaddrinfo(found);
 }
 
 }  // namespace

@@ -4,27 +4,13 @@
 #include <string>
 #include <utility>
 
+#include "retarget/base/descriptor.hpp"
 #include "retarget/live/address.hpp"
 
 namespace understudy {
 
-/// Owns a file descriptor. Move-only; -1: none.
-class Descriptor {
- public:
-  explicit Descriptor(int value = -1) : value_(value) {}
-  ~Descriptor();
-  Descriptor(Descriptor&& other) noexcept : value_(std::exchange(other.value_, -1)) {}
-  Descriptor& operator=(Descriptor&& other) noexcept {
-    std::swap(value_, other.value_);
-    return *this;
-  }
-  int value() const { return value_; }
-  bool is_open() const { return value_ >= 0; }
-
- private:
-  int value_;
-};
-
+/// Throws Error naming the address where there is no such host.
+void check_host(const Address& address);
 /// Waits for connections there; port 0: any free one. Throws Error naming the address: no such host, no
 /// permission, the port is taken.
 Descriptor listen_at(const Address& address);

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "retarget/formats/bytes.hpp"
-#include "retarget/formats/mesh_reader.hpp"
+#include "retarget/formats/file_formats.hpp"
 
 namespace understudy {
 namespace {
@@ -78,7 +78,9 @@ Mesh decode_floats(std::string_view bytes) {
 }
 
 Mesh decode_ply(const std::string& bytes, const std::string& source) {
-  Mesh mesh = parse_mesh(bytes, source + ".ply");
+  const FileFormat* const ply = format_of_suffix("frame.ply", kScanFrame);
+  US_CHECK(format_of_content(bytes, kScanFrame) == ply, source, ": a frame is no PLY file");
+  Mesh mesh = ply->parse(bytes, source);
   US_CHECK(mesh.vertices.rows() <= kMostStreamPoints, source, ": a frame of ", grouped(mesh.vertices.rows()),
            " points, more than ", grouped(kMostStreamPoints));
   if (mesh.is_cloud() && finite_count(mesh.vertices) < mesh.vertices.rows())

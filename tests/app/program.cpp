@@ -58,8 +58,9 @@ Program::Program(const std::vector<std::string>& arguments, ProgramOptions optio
                          static_cast<rlim_t>(options_.file_size_limit)};
       setrlimit(RLIMIT_FSIZE, &limit);
     }
-    if (options_.obey_permissions)  // fails for who is not root and has no such right anyway
-      for (const int right : {CAP_DAC_OVERRIDE, CAP_DAC_READ_SEARCH}) prctl(PR_CAPBSET_DROP, right);
+    if (options_.obey_permissions)  // fails for who is not root and has none of them anyway
+      for (const int right : {CAP_DAC_OVERRIDE, CAP_DAC_READ_SEARCH, CAP_NET_BIND_SERVICE})
+        prctl(PR_CAPBSET_DROP, right);
     execvp(argv[0], argv.data());
     _exit(127);
   }

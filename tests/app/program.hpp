@@ -11,7 +11,7 @@ namespace understudy::tests {
 struct ProgramOptions {
   std::string program;                   ///< another than ours: a path, or a name to look for
   long file_size_limit = -1;             ///< bytes a file may grow to, as on a full disk; -1: no limit
-  bool obey_permissions = false;         ///< take root's right to open every file away
+  bool obey_permissions = false;         ///< take root's right to open every file and port away
   std::vector<std::string> environment;  ///< "NAME=VALUE" on top of the test's own
   double patience_s = 100;               ///< killed after this long
 };

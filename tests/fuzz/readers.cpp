@@ -3,7 +3,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -39,23 +38,12 @@
 #include "retarget/motion/bvh.hpp"
 #include "retarget/motion/read_motion.hpp"
 #include "retarget/networks/weights_layout.hpp"
+#include "tests/fuzz/promises.hpp"
+#include "tests/fuzz/stream_reader.hpp"
 #include "ui/gui/key_chord.hpp"
 
 namespace understudy::fuzz {
 namespace {
-
-// What no reader may let through; the fuzzer takes an abort for a find.
-void must(bool holds, const char* what) {
-  if (holds) return;
-  std::fprintf(stderr, "broken promise: %s\n", what);
-  std::abort();
-}
-
-void check_mesh(const Mesh& mesh) {
-  must(mesh.faces.size() == 0 || (mesh.faces.minCoeff() >= 0 && mesh.faces.maxCoeff() < mesh.vertices.rows()),
-       "faces name vertices");
-  must(mesh.colors.rows() == 0 || mesh.colors.rows() == mesh.vertices.rows(), "colours fit");
-}
 
 void any_mesh(const std::string& bytes) {
   check_mesh(parse_mesh(bytes, "x"));
@@ -521,7 +509,8 @@ std::vector<Reader> all_readers() {
                              {"batch", batch, declared_by_table},
                              {"splits", splits, text_size},
                              {"report_rows", report_rows, text_size},
-                             {"settings", settings, text_size}};
+                             {"settings", settings, text_size},
+                             {"stream", stream, text_size}};
   add_mesh_formats(all);
   return all;
 }

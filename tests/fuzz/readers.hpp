@@ -1,4 +1,4 @@
-// Every reader of files that strangers make, by one signature, for the fuzzer.
+// Every reader of files and streams that strangers make, by one signature, for the fuzzer.
 #pragma once
 
 #include <cstddef>

@@ -1,10 +1,7 @@
-// --listen, --source - and --send of the shipped program: a camera that is none, and what an engine hears.
-#include <arpa/inet.h>
-#include <netinet/in.h>
-#include <sys/socket.h>
-
+// --listen, --source -, --follow and --send of the shipped program: a camera and an engine that are none.
 #include <cmath>
 #include <csignal>
+#include <fstream>
 #include <map>
 #include <sstream>
 
@@ -13,17 +10,14 @@
 #include "retarget/live/socket.hpp"
 #include "retarget/math/rotation.hpp"
 #include "tests/app/cli_fixture.hpp"
+#include "tests/app/osc_receiver.hpp"
+#include "tests/support/stream_sender.hpp"
 
 namespace understudy::tests {
 namespace {
 
-std::string free_port(int kind) {
-  const Descriptor probe(socket(AF_INET, kind, 0));
-  sockaddr_in place{};
-  place.sin_family = AF_INET;
-  place.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-  EXPECT_EQ(bind(probe.value(), reinterpret_cast<sockaddr*>(&place), sizeof place), 0);
-  return port_of(probe);
+std::string free_port() {
+  return port_of(listen_at({"tcp", "127.0.0.1", "0"}));
 }
 
 ProgramOptions named(const std::string& program) {
@@ -62,7 +56,7 @@ TEST_F(LiveOptionsOfTheProgram, AreInTheHelp) {
 }
 
 TEST_F(LiveOptionsOfTheProgram, AnEngineHearsTheExportedMotionToATenthOfADegree) {
-  const std::string port = free_port(SOCK_DGRAM);
+  const std::string port = OscReceiver().port();
   Program engine({"-L", port}, named("oscdump"));
   const Finished run = retarget(scans(), {"--send", "vmc://127.0.0.1:" + port, "--out", out("a.npz")});
   ASSERT_EQ(run.code, 0) << run.err;
@@ -84,7 +78,7 @@ TEST_F(LiveOptionsOfTheProgram, AnEngineHearsTheExportedMotionToATenthOfADegree)
 }
 
 TEST_F(LiveOptionsOfTheProgram, ACameraThatConnectsIsPerformedAndAnInterruptKeepsWhatCame) {
-  const std::string port = free_port(SOCK_STREAM);
+  const std::string port = free_port();
   Program program({"retarget", "--listen", "tcp://127.0.0.1:" + port, "--target", target(), "--out",
                    out("a.npz"), "--report", out("a.json")});
   ASSERT_TRUE(program.wait_for("waits for a sender"));
@@ -99,8 +93,80 @@ TEST_F(LiveOptionsOfTheProgram, ACameraThatConnectsIsPerformedAndAnInterruptKeep
   EXPECT_GT(read_npz(out("a.npz")).at("joints").shape[0], 10);
 }
 
+TEST_F(LiveOptionsOfTheProgram, ASecondCameraIsToldThatItIsRefusedAndTheFirstGoesOn) {
+  const std::string address = "tcp://127.0.0.1:" + free_port();
+  Program program({"retarget", "--listen", address, "--target", target(), "--out", out("a.npz")});
+  ASSERT_TRUE(program.wait_for("waits for a sender"));
+  Program first({camera(), walk(), address.substr(address.rfind(':') + 1), "--seconds", "90"},
+                named("python3"));
+  ASSERT_TRUE(program.wait_for("frame 0 root"));
+  const std::string told = StreamSender(address).heard();
+  EXPECT_EQ(told.rfind(address + ": 127.0.0.1:", 0), 0u) << told;
+  EXPECT_NE(told.find(" is refused, 127.0.0.1:"), std::string::npos) << told;
+  EXPECT_NE(told.find(" is sending\n"), std::string::npos) << told;
+  EXPECT_TRUE(program.wait_for(told.substr(0, told.size() - 1))) << "the user is told, too";
+  first.send(SIGTERM);
+  ASSERT_TRUE(program.wait_for("the next one is waited for")) << "the first one was still the sender";
+  program.send(SIGINT);
+  EXPECT_EQ(program.finish().code, 0);
+}
+
+TEST_F(LiveOptionsOfTheProgram, AFolderThatIsBeingWrittenIsSentScanByScan) {
+  const std::string live = scratch.path("live");
+  std::filesystem::create_directories(live);
+  OscReceiver engine;
+  Program program({"retarget", "--source", live, "--target", target(), "--follow", "--send",
+                   "osc://127.0.0.1:" + engine.port(), "--out", out("a.npz")});
+  std::vector<std::map<std::string, Vec3>> sent;
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_TRUE(engine.heard().empty()) << "before scan " << i;
+    write_cloud(live + "/" + frame_name(i), person_points(i));
+    ASSERT_TRUE(program.wait_for("frame " + std::to_string(i) + " root")) << program.finish().err;
+    const std::vector<std::string> heard = engine.heard();
+    EXPECT_EQ(heard.size(), 1u + kJointCount);
+    sent.push_back(joints_in(heard));
+    ASSERT_EQ(sent.back().size(), static_cast<size_t>(kJointCount));
+  }
+  write_text(live + "/done", "");
+  const Finished run = program.finish();
+  ASSERT_EQ(run.code, 0) << run.err;
+  const NpyArray joints = read_npz(out("a.npz")).at("joints");
+  ASSERT_EQ(joints.shape, (std::vector<int64_t>{3, kJointCount, 3}));
+  for (int t = 0; t < 3; ++t)
+    for (int j = 0; j < kJointCount; ++j)
+      for (int k = 0; k < 3; ++k)
+        EXPECT_NEAR(sent[t].at(kJointNames[j])[k], joints.values[(t * kJointCount + j) * 3 + k], 1e-4f)
+            << kJointNames[j] << ", frame " << t;
+}
+
+TEST_F(LiveOptionsOfTheProgram, WhatAFollowedFolderHoldsAlreadyIsNotSentInItsOwnTime) {
+  const std::string late = scratch.path("late");
+  std::filesystem::create_directories(late);
+  for (const int number : {0, 1, 201}) write_cloud(late + "/" + frame_name(number), person_points(0));
+  write_text(late + "/done", "");
+  OscReceiver engine;  // 200 seconds of it, more than the program's time
+  const Finished run = retarget(
+      late, {"--follow", "--fps", "1", "--send", "osc://127.0.0.1:" + engine.port(), "--out", out("a.npz")});
+  EXPECT_EQ(run.code, 0) << run.err;
+  EXPECT_FALSE(engine.heard().empty());
+  EXPECT_EQ(read_npz(out("a.npz")).at("joints").shape[0], 202);
+}
+
+TEST_F(LiveOptionsOfTheProgram, APortThatTheUserMayNotOpenIsNamedWithTheReason) {
+  std::ifstream setting("/proc/sys/net/ipv4/ip_unprivileged_port_start");
+  int first = 1024;  // that everybody may open
+  setting >> first;
+  if (first <= 1) GTEST_SKIP() << "on this system everybody may open every port";
+  ProgramOptions nobody;
+  nobody.obey_permissions = true;
+  const Finished run = run_program(
+      {"retarget", "--listen", "tcp://127.0.0.1:1", "--target", target(), "--out", out("a.npz")}, nobody);
+  EXPECT_EQ(run.code, 1);
+  expect_clean_failure(run, "tcp://127.0.0.1:1: cannot be listened at (Permission denied)");
+}
+
 TEST_F(LiveOptionsOfTheProgram, RefusesInOneSentence) {
-  const std::string taken = free_port(SOCK_STREAM);
+  const std::string taken = free_port();
   const Descriptor listening = listen_at({"tcp", "127.0.0.1", taken});
   const auto listen = [&](const std::string& address, std::vector<std::string> more = {}) {
     std::vector<std::string> all = {"retarget", "--listen", address,     "--target",

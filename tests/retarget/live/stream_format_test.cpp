@@ -147,5 +147,16 @@ TEST(StreamFrame, APlyThatLiesNamesTheStream) {
   }
 }
 
+TEST(StreamFrame, WhatIsNoPlyIsNotReadAsAnythingElse) {
+  for (const char* other :
+       {"0 0 0\n1 0 0\n0 1 0\n", "OFF\n1 0 0\n0 0 0\n", R"({"asset": {"version": "2.0"}})"})
+    try {
+      decode({StreamFormat::Ply, other}, "camera");
+      FAIL() << "it was read: " << other;
+    } catch (const Error& error) {
+      EXPECT_STREQ(error.what(), "camera: a frame is no PLY file");
+    }
+}
+
 }  // namespace
 }  // namespace understudy

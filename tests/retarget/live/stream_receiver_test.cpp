@@ -1,49 +1,19 @@
 // A receiver on this machine: newest wins, one sender at a time, dead and lying ones are survived.
 #include "retarget/live/stream_receiver.hpp"
 
-#include <arpa/inet.h>
 #include <gtest/gtest.h>
-#include <netinet/in.h>
-#include <sys/socket.h>
 #include <unistd.h>
 
 #include <cstring>
 
 #include "retarget/base/error.hpp"
+#include "tests/support/stream_sender.hpp"
 
 namespace understudy {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-
-/// Connects to a receiver.
-class Sender {
- public:
-  explicit Sender(const StreamReceiver& receiver) : socket_(socket(AF_INET, SOCK_STREAM, 0)) {
-    sockaddr_in place{};
-    place.sin_family = AF_INET;
-    place.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-    const std::string& address = receiver.address();
-    place.sin_port = htons(static_cast<uint16_t>(std::stoi(address.substr(address.rfind(':') + 1))));
-    EXPECT_EQ(connect(socket_.value(), reinterpret_cast<sockaddr*>(&place), sizeof place), 0);
-  }
-  void send(const std::string& bytes) const {
-    EXPECT_EQ(::send(socket_.value(), bytes.data(), bytes.size(), MSG_NOSIGNAL),
-              static_cast<ssize_t>(bytes.size()));
-  }
-  /// What is said to it until it is closed.
-  std::string heard() const {
-    timeval patience{20, 0};
-    setsockopt(socket_.value(), SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
-    std::string all;
-    char buffer[256];
-    for (ssize_t n; (n = read(socket_.value(), buffer, sizeof buffer)) > 0;) all.append(buffer, n);
-    return all;
-  }
-
- private:
-  Descriptor socket_;
-};
+using tests::StreamSender;
 
 /// One point at so many millimetres.
 std::string cloud(int16_t x) {
@@ -64,7 +34,7 @@ class Receiver : public ::testing::Test {
 };
 
 TEST_F(Receiver, HandsOutWhatIsSent) {
-  const Sender camera(receiver);
+  const StreamSender camera(receiver.address());
   camera.send(cloud(1000));
   EXPECT_EQ(newest(), 1.0f);
   camera.send(cloud(2000));
@@ -73,45 +43,47 @@ TEST_F(Receiver, HandsOutWhatIsSent) {
 }
 
 TEST_F(Receiver, KeepsTheNewestAndCountsTheOthers) {
-  const Sender camera(receiver);
+  const StreamSender camera(receiver.address());
   camera.send(cloud(1000) + cloud(2000) + cloud(3000));
   while (receiver.dropped() < 2) usleep(1000);
   EXPECT_EQ(newest(), 3.0f);
 }
 
 TEST_F(Receiver, RefusesASecondSenderInASentence) {
-  const Sender camera(receiver);
+  const StreamSender camera(receiver.address());
   camera.send(cloud(1000));
   EXPECT_EQ(newest(), 1.0f);
-  EXPECT_NE(Sender(receiver).heard().find("is refused"), std::string::npos);
+  const StreamSender second(receiver.address());
+  second.send(cloud(3000));  // as cameras do, who wait for nothing
+  EXPECT_NE(second.heard().find("is refused"), std::string::npos);
   camera.send(cloud(2000));
   EXPECT_EQ(newest(), 2.0f);
 }
 
 TEST_F(Receiver, WaitsForTheNextSenderWhenOneDiesInTheMiddleOfAFrame) {
   {
-    const Sender camera(receiver);
+    const StreamSender camera(receiver.address());
     camera.send(cloud(1000) + cloud(2000).substr(0, 9));
     EXPECT_EQ(newest(), 1.0f);
   }
-  const Sender again(receiver);
+  const StreamSender again(receiver.address());
   again.send(cloud(3000));
   EXPECT_EQ(newest(), 3.0f);
   EXPECT_FALSE(receiver.ended());
 }
 
 TEST_F(Receiver, ClosesWhoLiesAboutALengthAndTakesTheNext) {
-  const Sender liar(receiver);
+  const StreamSender liar(receiver.address());
   liar.send("\xff\xff\xff\x7f and more");
   liar.heard();  // until it is closed
-  const Sender camera(receiver);
+  const StreamSender camera(receiver.address());
   camera.send(cloud(1000));
   EXPECT_EQ(newest(), 1.0f);
 }
 
 TEST(StreamReceiver, ASilentSenderMakesRoomForAnother) {
   StreamReceiver receiver({"tcp://127.0.0.1:0", StreamFormat::LiveScan, 0});
-  const Sender silent(receiver), camera(receiver);
+  const StreamSender silent(receiver.address()), camera(receiver.address());
   camera.send(cloud(1000));
   EXPECT_TRUE(receiver.newest(Clock::now() + std::chrono::seconds(20)));
 }

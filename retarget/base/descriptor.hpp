@@ -1,0 +1,29 @@
+// Owns what the system numbers: an open file, a socket, an end of a pipe.
+#pragma once
+
+#include <unistd.h>
+
+#include <utility>
+
+namespace understudy {
+
+/// Closes it at the end. Move-only; -1: none.
+class Descriptor {
+ public:
+  explicit Descriptor(int value = -1) : value_(value) {}
+  ~Descriptor() {
+    if (value_ >= 0) ::close(value_);
+  }
+  Descriptor(Descriptor&& other) noexcept : value_(std::exchange(other.value_, -1)) {}
+  Descriptor& operator=(Descriptor&& other) noexcept {
+    std::swap(value_, other.value_);
+    return *this;
+  }
+  int value() const { return value_; }
+  bool is_open() const { return value_ >= 0; }
+
+ private:
+  int value_;
+};
+
+}  // namespace understudy
