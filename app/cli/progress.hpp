@@ -8,8 +8,8 @@ namespace understudy::app {
 
 class Progress {
  public:
-  /// total 0: unknown. Writes to stderr. lines: new lines even on a terminal. item: what is counted; "": none,
-  /// it is a share of the total.
+  /// total 0: unknown. Writes to stderr. lines: new lines even on a terminal. item: what is counted; "":
+  /// nothing, it is a share of the total.
   Progress(std::string what, int64_t total, bool lines = false, std::string item = "frame");
   ~Progress();
   Progress(const Progress&) = delete;

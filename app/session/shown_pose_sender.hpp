@@ -9,8 +9,8 @@
 
 namespace understudy::app {
 
-/// One receiver. What is seen is sent: the user's edits, the playhead, its tempo. While new frames are shown as
-/// they come, a source that is lost lets the target blend to its T-pose (TPoseBlend).
+/// One receiver. What is seen is sent: the user's edits, the playhead, its tempo. While new frames are shown
+/// as they come, a source that is lost lets the target blend to its T-pose (TPoseBlend).
 class ShownPoseSender {
  public:
   explicit ShownPoseSender(PoseSender to) : to_(std::move(to)) {}

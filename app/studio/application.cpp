@@ -218,10 +218,10 @@ int64_t Application::arrived() const {
 /// Changes with all that a frame shows and that no command changed.
 std::string Application::fingerprint(int64_t arrived) const {
   const Session& s = session();
-  std::string key = key_of(shown_frame(s), s.source.frames.size(), s.source.generation, s.notices.size(),
-                           s.notices_made, s.errors.size(), s.question.has_value(), s.working, s.log.size(),
-                           s.changed, s.truth != nullptr, arrived, s.view, s.flat.generation,
-                           s.sending.address, s.sending.sent > 0);
+  std::string key =
+      key_of(shown_frame(s), s.source.frames.size(), s.source.generation, s.notices.size(), s.notices_made,
+             s.errors.size(), s.question.has_value(), s.working, s.log.size(), s.changed, s.truth != nullptr,
+             arrived, s.view, s.flat.generation, s.sending.address, s.sending.sent > 0);
   for (const TakeState& take : s.takes)
     key += key_of(take.ready, take.problem, take.paint_problem, take.generation, take.shown.poses.size(),
                   take.performed.size(), take.series.size(), take.as_loaded != nullptr, take.flat != nullptr);

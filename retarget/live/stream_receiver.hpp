@@ -17,7 +17,8 @@ namespace understudy {
 
 /// "-": standard input. "tcp://HOST:PORT": senders connect there.
 bool is_live_address(const std::string& address);
-/// "tcp://HOST:PORT" in full: this machine, port 9000, where they are left out. Throws Error where it is none.
+/// "tcp://HOST:PORT" in full: this machine, port 9000, where they are left out. Throws Error where it is
+/// none.
 Address listen_address(const std::string& text);
 
 struct ReceiverOptions {
