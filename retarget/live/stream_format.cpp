@@ -43,8 +43,9 @@ int64_t ply_size(int64_t bytes) {
   return bytes;
 }
 
+/// Noise read as numbers is far off: one such frame must not decide how large everybody is.
 bool is_seen(const Vec3& point) {
-  return point.allFinite() && !point.isZero(0);
+  return point.allFinite() && !point.isZero(0) && point.cwiseAbs().maxCoeff() <= kFarthestPoint;
 }
 
 /// Without what was not seen.
@@ -83,9 +84,7 @@ Mesh decode_ply(const std::string& bytes, const std::string& source) {
   Mesh mesh = ply->parse(bytes, source);
   US_CHECK(mesh.vertices.rows() <= kMostStreamPoints, source, ": a frame of ", grouped(mesh.vertices.rows()),
            " points, more than ", grouped(kMostStreamPoints));
-  if (mesh.is_cloud() && finite_count(mesh.vertices) < mesh.vertices.rows())
-    return seen_points(std::move(mesh));
-  return mesh;
+  return mesh.is_cloud() ? seen_points(std::move(mesh)) : mesh;
 }
 
 }  // namespace

@@ -54,9 +54,12 @@ class StreamCutter {
   bool whole_ = false;
 };
 
-/// Its points, those of LiveScan in metres; colours where it has some. Points that are not finite are left
-/// out, and in LiveScan and Float32 those at exactly 0, 0, 0, which depth cameras give for what they did not
-/// see. Throws Error naming `source`.
+/// A coordinate in the stream's unit, whichever that is: further off nobody stands.
+constexpr float kFarthestPoint = 1e6f;
+
+/// Its points, those of LiveScan in metres; colours where it has some. Of clouds the points that are not
+/// finite, beyond kFarthestPoint, or at exactly 0, 0, 0, which depth cameras give for what they did not see,
+/// are left out. Throws Error naming `source`.
 Mesh decode(const StreamFrame& frame, const std::string& source);
 
 }  // namespace understudy

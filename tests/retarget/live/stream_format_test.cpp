@@ -95,8 +95,8 @@ TEST(StreamCutter, KnowsAPlyByItsMark) {
 }
 
 TEST(StreamCutter, ReadsFloatsAndLeavesOutWhatWasNotSeen) {
-  const auto frames =
-      cut(StreamFormat::Float32, floats({1, 2, 3, NAN, 0, 0, 0, 0, 0, 4, 5, INFINITY, -1, 0, 0}), 7);
+  const auto frames = cut(StreamFormat::Float32,
+                          floats({1, 2, 3, NAN, 0, 0, 0, 0, 0, 4, 5, INFINITY, 1e30f, 1, 1, -1, 0, 0}), 7);
   ASSERT_EQ(frames.size(), 1u);
   const Mesh cloud = decode(frames[0], "camera");
   ASSERT_EQ(cloud.vertices.rows(), 2);
