@@ -32,10 +32,10 @@ size_t distance_between(const std::string& a, const std::string& b) {
   return row.back();
 }
 
-/// "'sorce' is not known; the nearest is 'source'".
+/// "'sorce' is not known; the nearest is 'source'"; none is near of which half the letters are others.
 std::string unknown(const std::string& what, const std::string& name, const std::vector<std::string>& known) {
   std::string sentence = what + "'" + excerpt(name) + "' is not known", nearest;
-  size_t least = 64;
+  size_t least = std::min<size_t>(64, name.size() / 2 + 1);
   for (const std::string& one : known)
     if (const size_t off = name.size() > 64 ? least : distance_between(name, one); off < least)
       least = off, nearest = one;

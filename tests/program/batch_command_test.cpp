@@ -191,6 +191,8 @@ TEST_F(Batch, RefusesListsThatAreNoneBeforeItBegins) {
                  "line 1: option preview: '../a.png' is no plain name");
   expect_refusal(R"({"id": "a", "source": "s", "target": "t", "options": {"follow": true}})",
                  "option 'follow' is not known");
+  expect_refusal(R"({"id": "a", "source": "s", "target": "t", "options": {"send": ["vmc"]}})",
+                 "retarget option 'send' is not known");
   expect_refusal("{", "jobs.jsonl line 1: is damaged");
   expect_refusal("", "jobs.jsonl: lists no job");
   write_text(manifest(), line);
