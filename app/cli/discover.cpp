@@ -18,6 +18,7 @@
 #include "render/image.hpp"
 #include "retarget/base/error.hpp"
 #include "retarget/base/index.hpp"
+#include "retarget/base/log.hpp"
 #include "retarget/base/part_file.hpp"
 #include "retarget/base/text.hpp"
 #include "retarget/discovery/rig_figures.hpp"
@@ -148,6 +149,19 @@ int find_rig(const DiscoverOptions& options) {
   return 0;
 }
 
+/// A rig fits no scans of another body, in any frame: then none is worse than the others.
+void warn_of_another_body(const DiscoveredRig& rig, const std::string& scans) {
+  constexpr double kFarOfSize = 0.06;
+  std::vector<double> off;
+  for (const float one : rig.off_m)
+    if (one >= 0) off.push_back(static_cast<double>(one));
+  const double size = static_cast<double>(box_diagonal(rig.found.rig.surface.vertices));
+  const double usual = off.empty() ? 0 : percentile(off, 50);
+  if (usual > kFarOfSize * size)
+    log::warn(scans + printed(": is %.0f mm off the rig, which is %.0f mm long: it may be of another body",
+                              1000 * usual, 1000 * size));
+}
+
 /// Lays a known rig on scans as they come.
 int follow_rig(const DiscoverOptions& options) {
   const RiggedMotion known = read_rig(options.rig);
@@ -160,6 +174,7 @@ int follow_rig(const DiscoverOptions& options) {
       });
   progress.finish();
   tell(followed.rig);
+  warn_of_another_body(followed.rig, options.source.path);
   Json more = {{"source", options.source.path}, {"rig", options.rig}};
   if (!followed.ms.empty()) {
     more["ms"] = percentile(followed.ms, 50);

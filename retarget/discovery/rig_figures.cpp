@@ -49,7 +49,7 @@ void measure_motion(const RiggedMotion& performed, std::vector<FoundBone>& bones
 }
 
 std::vector<bool> doubted_frames(const std::vector<float>& off_m, float size_m) {
-  constexpr float kMuch = 2, kMuchOfSize = 0.02f, kTooMuchOfSize = 0.05f;
+  constexpr float kMuch = 2, kMuchOfSize = 0.02f;
   std::vector<double> known;
   for (const float off : off_m)
     if (off >= 0) known.push_back(off);
@@ -60,8 +60,7 @@ std::vector<bool> doubted_frames(const std::vector<float>& off_m, float size_m) 
   std::vector<bool> doubted;
   doubted.reserve(off_m.size());
   for (const float off : off_m)
-    doubted.push_back(off < 0 || off > kMuch * usual || off > kTooMuchOfSize * size_m ||
-                      off > std::max(kMuch * good, kMuchOfSize * size_m));
+    doubted.push_back(off < 0 || off > kMuch * usual || off > std::max(kMuch * good, kMuchOfSize * size_m));
   return doubted;
 }
 

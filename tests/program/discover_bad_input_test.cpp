@@ -163,11 +163,21 @@ TEST_F(DiscoverBadInput, ARigOfThreeHundredBonesIsFollowedAndPerformed) {
   std::vector<Mesh> scans = test::scans_of(long_one);
   const Finished followed = discover(array("scans.npz", scans), {"--rig", file, "--out", out("a.glb")});
   ASSERT_EQ(followed.code, 0) << followed.err;
+  EXPECT_EQ(followed.err.find("another body"), std::string::npos) << followed.err;
   EXPECT_EQ(read_character(out("a.glb")).skins[0].joints.size(), 300u);
   const Finished performed =
       run_program({"discover", "--rig", file, "--perform", out("a.glb"), "--out", out("b.glb")});
   ASSERT_EQ(performed.code, 0) << performed.err;
   EXPECT_EQ(from_character(read_character(out("b.glb")), 0, 30).motion.poses.size(), scans.size());
+}
+
+TEST_F(DiscoverBadInput, ScansOfAnotherBodyAreToldOf) {
+  Mesh ball{0.2f * Points::Random(2000, 3).rowwise().normalized()};
+  const Finished followed = discover(array("ball.npz", {ball, ball, ball}),
+                                     {"--rig", rig("chain.glb", chain(10)), "--out", out("a.glb")});
+  ASSERT_EQ(followed.code, 0) << followed.err;
+  EXPECT_NE(followed.err.find("ball.npz: is "), std::string::npos) << followed.err;
+  EXPECT_NE(followed.err.find("it may be of another body"), std::string::npos) << followed.err;
 }
 
 TEST_F(DiscoverBadInput, BonesWithoutAPartner) {

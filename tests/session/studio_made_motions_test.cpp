@@ -189,7 +189,8 @@ TEST_F(MadeMotionsTest, CancelledLeavesWhatWasOffered) {
   EXPECT_EQ(made(studio).job, 0);
   ASSERT_FALSE(made(studio).offered.empty());
   EXPECT_LT(made(studio).offered.size(), 100u);
-  if (made(studio).offered.size() == 1) EXPECT_EQ(made(studio).offered[0].made, before);
+  const auto first = made(studio).offered[0].made;  // a long one, where one was ready before the cancel
+  EXPECT_TRUE(first == before || first->motion.poses.size() == 3000u);
   EXPECT_TRUE(studio.session().errors.empty());
 }
 
