@@ -160,6 +160,12 @@ Facts of_study(const Session& session) {
   };
 }
 
+Facts of_sending(const Session& session) {
+  const std::string& address = session.sending.address;
+  return {{"sends_to", address.empty() ? "nowhere" : address},
+          {"poses_sent", std::to_string(session.sending.sent)}};
+}
+
 }  // namespace
 
 std::vector<std::pair<std::string, std::string>> facts(const Session& session) {
@@ -215,12 +221,10 @@ std::vector<std::pair<std::string, std::string>> facts(const Session& session) {
       {"errors", count(session.errors.size())},
       {"error", session.errors.empty() ? "" : session.errors.front().text},
       {"question", question_name(session)},
-      {"sends_to", session.sending.address.empty() ? "nowhere" : session.sending.address},
-      {"poses_sent", std::to_string(session.sending.sent)},
       {"jobs", count(session.jobs.size())},
       {"bad_frames", count(bad_frames(session).size())},
   };
-  for (const Facts& more : {of_study(session), performance(session)})
+  for (const Facts& more : {of_study(session), performance(session), of_sending(session)})
     all.insert(all.end(), more.begin(), more.end());
   return all;
 }
