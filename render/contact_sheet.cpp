@@ -71,7 +71,7 @@ struct Row {
   float yaw;
   std::vector<Cell>* cells;
   float height = 0.05f;  ///< metres, of this subject's highest point above its floor
-  PixelSize size;        ///< of its cells
+  PixelSize size{};      ///< of its cells
 };
 
 struct Layout {
@@ -239,10 +239,8 @@ std::vector<Row> rows_of(std::vector<Cell>& sources, std::vector<Cell>& targets,
   std::vector<Row> rows;
   for (const ViewAngle& view : kViews) {
     const float yaw = options.heading + view.yaw;
-    if (!sources.empty())
-      rows.push_back({options.source_caption + " \xC2\xB7 " + view.name, yaw, &sources, 0.05f, {}});
-    if (!targets.empty())
-      rows.push_back({options.target_caption + " \xC2\xB7 " + view.name, yaw, &targets, 0.05f, {}});
+    if (!sources.empty()) rows.push_back({options.source_caption + " \xC2\xB7 " + view.name, yaw, &sources});
+    if (!targets.empty()) rows.push_back({options.target_caption + " \xC2\xB7 " + view.name, yaw, &targets});
   }
   return rows;
 }
@@ -321,8 +319,7 @@ Image strip(Renderer& renderer, const std::vector<StripRow>& performers, const s
   std::vector<Row> rows;
   rows.reserve(cells.size());
   for (size_t r = 0; r < cells.size(); ++r)
-    rows.push_back(
-        {side_by_side ? time_text(seconds[0]) : performers[r].caption, options.yaw, &cells[r], 0.05f, {}});
+    rows.push_back({side_by_side ? time_text(seconds[0]) : performers[r].caption, options.yaw, &cells[r]});
   if (!side_by_side)
     for (const double time : seconds) headers.push_back({"", time_text(time)});
   SheetOptions sheet;
