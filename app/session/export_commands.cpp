@@ -132,7 +132,7 @@ void add_export_commands(Commands& commands) {
   commands.add({"poses.address", "Where poses are sent", "vmc://HOST:PORT|osc://HOST:PORT"}, [](Call& c) {
     c.session.settings.send_to = send_address(c.word(0, "address")).text();
     c.studio.save_settings();
-    if (!c.session.sending.address.empty()) c.studio.send_poses(true);
+    if (!c.session.sends_to.empty()) c.studio.send_poses(true);
   });
   commands.add(
       {"export.run", "Export animation",

@@ -166,12 +166,6 @@ struct Question {
       -1;  ///< PaintMisfit: whose weights were painted on another surface; the others: whose target it is
 };
 
-/// What is sent to another program while that is switched on, see ShownPoseSender.
-struct SendingState {
-  std::string address;  ///< in full; empty: nothing is sent
-  int64_t sent = 0;     ///< poses since it was switched on
-};
-
 /// What the mouse does in the views.
 enum class Tool { Look, Joints, Bones, TargetJoints, Paint, Crop, RestPose, Face };
 constexpr Names<8> kToolNames{"look",  "joints", "bones",     "target-joints",
@@ -197,7 +191,7 @@ struct Session {
   SecondBodyState second;
   MadeMotionsState made_motions;
   StylesState styles;
-  SendingState sending;
+  std::string sends_to;  ///< the address in full that shown poses go to (ShownPoseSender); empty: none
   View view;
   Playback playback;
   Settings settings;

@@ -379,7 +379,7 @@ void Studio::tick(double seconds, double played) {
   if (session_.view.turntable_deg_s != 0)
     for (CameraState& camera : session_.view.cameras)
       camera.yaw += static_cast<float>(played) * session_.view.turntable_deg_s * kPi / 180;
-  send_shown(seconds);
+  if (background_->sender) background_->sender->push(session_, seconds);
   session_.jobs = jobs_.views();
   for (size_t k = 0; k < session_.takes.size(); ++k)
     if (session_.takes[k].as_loaded && session_.takes[k].problem.empty() && !session_.paused)
@@ -394,7 +394,7 @@ void Studio::tick(double seconds, double played) {
 /// A host's name may take long to find: looked up in the background.
 void Studio::send_poses(bool wanted) {
   background_->sender.reset();
-  session_.sending = {};
+  session_.sends_to.clear();
   const int64_t asked = ++background_->sending;
   if (!wanted) return;
   const std::string address = session_.settings.send_to;
@@ -403,13 +403,9 @@ void Studio::send_poses(bool wanted) {
       "Finding " + address, [sender, address](JobControl&) { sender->emplace(address); },
       [this, sender, asked] {
         if (asked != background_->sending) return;
-        session_.sending.address = (*sender)->address();
+        session_.sends_to = (*sender)->address();
         background_->sender.emplace(std::move(**sender));
       });
-}
-
-void Studio::send_shown(double seconds) {
-  if (background_->sender && background_->sender->push(session_, seconds)) ++session_.sending.sent;
 }
 
 void Studio::autosave(double seconds) {

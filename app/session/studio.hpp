@@ -171,7 +171,6 @@ class Studio {
   void measure_finished();
   void measure(size_t k);
   TakeState* take_of(int64_t id);
-  void send_shown(double seconds);
   void autosave(double seconds);
   void autosave_ended();
 

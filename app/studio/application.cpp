@@ -207,7 +207,7 @@ double Application::patience_s() const {
     return std::clamp(fastest_s() - seconds_between(drawn_at_, now), kBriefest, kListening);
   if (seconds_between(input_at_, now) < kTooltips) return kLookingAround;
   const double patience = gui_->wants_text() ? kBlink : kAsleep;
-  return s.sending.address.empty() ? patience : std::min(patience, ShownPoseSender::kStillEvery_s);
+  return s.sends_to.empty() ? patience : std::min(patience, ShownPoseSender::kStillEvery_s);
 }
 
 /// Pictures and looks that other threads have made.
@@ -218,10 +218,9 @@ int64_t Application::arrived() const {
 /// Changes with all that a frame shows and that no command changed.
 std::string Application::fingerprint(int64_t arrived) const {
   const Session& s = session();
-  std::string key =
-      key_of(shown_frame(s), s.source.frames.size(), s.source.generation, s.notices.size(), s.notices_made,
-             s.errors.size(), s.question.has_value(), s.working, s.log.size(), s.changed, s.truth != nullptr,
-             arrived, s.view, s.flat.generation, s.sending.address, s.sending.sent > 0);
+  std::string key = key_of(shown_frame(s), s.source.frames.size(), s.source.generation, s.notices.size(),
+                           s.notices_made, s.errors.size(), s.question.has_value(), s.working, s.log.size(),
+                           s.changed, s.truth != nullptr, arrived, s.view, s.flat.generation, s.sends_to);
   for (const TakeState& take : s.takes)
     key += key_of(take.ready, take.problem, take.paint_problem, take.generation, take.shown.poses.size(),
                   take.performed.size(), take.series.size(), take.as_loaded != nullptr, take.flat != nullptr);

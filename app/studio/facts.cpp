@@ -160,12 +160,6 @@ Facts of_study(const Session& session) {
   };
 }
 
-Facts of_sending(const Session& session) {
-  const std::string& address = session.sending.address;
-  return {{"sends_to", address.empty() ? "nowhere" : address},
-          {"poses_sent", std::to_string(session.sending.sent)}};
-}
-
 }  // namespace
 
 std::vector<std::pair<std::string, std::string>> facts(const Session& session) {
@@ -221,10 +215,11 @@ std::vector<std::pair<std::string, std::string>> facts(const Session& session) {
       {"errors", count(session.errors.size())},
       {"error", session.errors.empty() ? "" : session.errors.front().text},
       {"question", question_name(session)},
+      {"sends_to", session.sends_to.empty() ? "nowhere" : session.sends_to},
       {"jobs", count(session.jobs.size())},
       {"bad_frames", count(bad_frames(session).size())},
   };
-  for (const Facts& more : {of_study(session), performance(session), of_sending(session)})
+  for (const Facts& more : {of_study(session), performance(session)})
     all.insert(all.end(), more.begin(), more.end());
   return all;
 }

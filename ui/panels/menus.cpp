@@ -47,7 +47,7 @@ Items file_menu(const app::Session& session) {
           {"Export\u2026", "dialog.open", {"export"}},
           {"Save picture\u2026", "dialog.open", {"picture"}},
           {"Save video\u2026", "dialog.open", {"video"}},
-          {"Send to an engine\u2026", "dialog.open", {"send"}, !session.sending.address.empty()},
+          {"Send to an engine\u2026", "dialog.open", {"send"}, !session.sends_to.empty()},
           kLine,
           {"Settings\u2026", "dialog.open", {"settings"}},
           {"Quit", "app.quit"}};

@@ -32,9 +32,9 @@ void draw_address(const Address& address, PanelContext& context) {
 }
 
 std::string state_words(const app::Session& session) {
-  if (session.sending.address.empty())
-    return "Off. Nobody need listen yet: it can be switched on at any time.";
-  if (session.sending.sent == 0) return "On: nothing is shown that performs.";
+  if (session.sends_to.empty()) return "Off. Nobody need listen yet: it can be switched on at any time.";
+  const app::TakeState* const take = selected_state(session);
+  if (take == nullptr || take->shown.poses.empty()) return "On: nothing is shown that performs.";
   return "On: the current take is sent as it is shown, played or moved by hand.";
 }
 
@@ -44,7 +44,7 @@ bool draw_sending(const app::Session& session, PanelContext& context) {
   Ui& ui = context.ui;
   if (!begin_dialog(ui, "send", "Send to an engine", 440)) return true;
   draw_address(send_address(session.settings.send_to), context);
-  bool is_on = !session.sending.address.empty();
+  bool is_on = !session.sends_to.empty();
   if (toggle_row(ui, {"send.on", "Send", "Every pose that is shown of the current take"}, is_on))
     context.ask("poses.send", {on_off(is_on)});
   hint(ui, state_words(session));

@@ -87,7 +87,7 @@ std::string document_words(const app::Session& session) {
 void draw_sending_sign(const app::Session& session, PanelContext& context) {
   ImGui::SetCursorPosY((context.ui.px(kStatusHeight) - ImGui::GetFrameHeight()) / 2);
   ButtonOptions options;
-  options.look = ButtonLook::Quiet, options.tooltip = "Poses go to " + session.sending.address;
+  options.look = ButtonLook::Quiet, options.tooltip = "Poses go to " + session.sends_to;
   if (button(context.ui, "status.sending", kSendingWords, options)) context.ask("dialog.open", {"send"});
 }
 
@@ -102,7 +102,7 @@ void draw_status(const app::Session& session, PanelContext& context, float frame
   const float rate_width = rate.empty() ? 0 : ui.px(58);
   const float document_width =
       wide ? std::min(ui.px(220), ImGui::CalcTextSize(document_words(session).c_str()).x + ui.px(20)) : 0;
-  const bool sends = wide && !session.sending.address.empty();
+  const bool sends = wide && !session.sends_to.empty();
   const float sending_width = sends ? ImGui::CalcTextSize(kSendingWords).x + ui.px(24) : 0;
   float left = width - rate_width - document_width - sending_width;
   const bool completing = session.source.completing >= 0 && session.jobs.empty();
